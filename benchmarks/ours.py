@@ -178,8 +178,8 @@ def _explore(given: argparse.Namespace, began: float) -> Explored:
     result.memory = resident()
     result.rule_runs, result.allowed = found.rule_runs, found.allowed or None
     if found.survey is not None:
-        space = found.survey.space
-        result.bytes_per_configuration = space.bytes_used / space.size
+        search = found.survey.search
+        result.bytes_per_configuration = search.bytes_used / search.size
     return result
 
 

@@ -83,11 +83,11 @@ def _check(mission: str, reductions: tuple[str, ...]) -> None:
 @contextmanager
 def rows(*, compressed: bool) -> Iterator[None]:
     """Compress the rows of every exploration meanwhile, or of none."""
-    from checker.engines.fast.space import Space
+    from checker.engines.fast import store
 
-    before = Space.PLAIN, Space.COMPRESSED_FROM
-    Space.PLAIN, Space.COMPRESSED_FROM = (0, 0) if compressed else (1 << 30, 1 << 30)
+    before = store.PLAIN, store.COMPRESSED_FROM
+    store.PLAIN, store.COMPRESSED_FROM = (0, 0) if compressed else (1 << 30, 1 << 30)
     try:
         yield
     finally:
-        Space.PLAIN, Space.COMPRESSED_FROM = before
+        store.PLAIN, store.COMPRESSED_FROM = before

@@ -63,9 +63,9 @@ def test_an_interruption_is_a_bound_a_little_later():
 
 def test_what_is_doubted_is_bounded():
     mission = load_mission("surveillance")
-    space = explore(mission.initial, engine=Engine.FAST).survey.space
+    expander = explore(mission.initial, engine=Engine.FAST).survey.search.expander
     with bounded(Limits(seconds=-1.0)), pytest.raises(BoundMet):
-        crosscheck.crosscheck(space, [0])
+        crosscheck.crosscheck(expander, [0])
 
 
 def test_what_was_explored_and_not_looked_at_does_not_hold(clock, monkeypatch):
@@ -127,8 +127,8 @@ def test_after_an_interruption_one_checkpoint_is_written_at_most(monkeypatch, tm
     monkeypatch.setattr(checker.engines.fast.explorer, "CHUNK", 1)
     saved = []
 
-    def save(space, *_):
-        saved.append(space.expanded)
+    def save(search, *_):
+        saved.append(search.expanded)
         limits.interruption.wish()
 
     monkeypatch.setattr(checker.engines.fast.explorer, "save", save)

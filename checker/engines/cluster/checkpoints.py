@@ -21,7 +21,7 @@ from checker.engines.fast import repacking
 from checker.engines.fast.checkpoint import is_time
 from checker.engines.fast.columns import Packing
 from checker.engines.fast.learned_model import CROWDS, CUT, EXPANDED, LIMIT, SIZE
-from checker.engines.fast.space import MOST_ROWS
+from checker.engines.fast.store import MOST_ROWS
 
 SCHEMA = "bigactors.shard/2"
 UNKNOWN = -1
@@ -97,31 +97,33 @@ def read_latest(folder: Path, digest: str, workers: int) -> Latest | None:
 
 def save(shard: Shard, folder: Path, number: int, digest: str) -> None:
     """Write a worker's checkpoint."""
+    store = shard.store
     head = {
         "schema": SCHEMA,
         "digest": digest,
         "worker": [shard.me, shard.workers],
-        "words": shard.packing.words,
+        "words": store.packing.words,
         "layers": [*shard.begins, shard.end],
         "rules": dict(shard.rules()),
         "happened": sorted(shard.happened_before | happened(shard)),
     }
     arrays = (
-        shard.rows.words[: shard.size * shard.packing.words],
-        shard.rows.origins.kept(shard.size),
-        shard.packing.columns,
+        store.rows.words[: store.size * store.packing.words],
+        store.rows.origins.kept(store.size),
+        store.packing.columns,
         np.frombuffer(b"".join(shard.keys.places), np.uint8),
         np.diff(shard.keys.begins).astype(np.int64),
         shard.keys.digests(),
-        np.array(sorted({row for row, *_ in shard.learned}), np.int64),
-        shard.state[list(KEPT)],
+        np.array(sorted({row for row, *_ in shard.model.learned}), np.int64),
+        store.state[list(KEPT)],
     )
     write_archive(path_of(folder, number, shard.me), head, KINDS, arrays)
 
 
 def happened(shard: Shard) -> set[str]:
     """Return the names of the environment's events that occurred."""
-    steps = (shard.learner.steps.get(int(step)) for step in np.flatnonzero(shard.counts.used))
+    taken = np.flatnonzero(shard.expander.counts.used)
+    steps = (shard.model.learner.steps.get(int(step)) for step in taken)
     return {str(label.about) for label in steps if label is not None and label.agent is None}
 
 
@@ -231,7 +233,7 @@ class Loading:
         codes = self.codes[self.begins[:-1] + old]
         if np.any(codes == UNKNOWN):
             return False
-        own = np.zeros(len(shard.learner.columns), np.int64)
+        own = np.zeros(len(shard.model.learner.columns), np.int64)
         known = self.numbers != UNKNOWN
         own[self.numbers[known]] = codes[known]
         try:
@@ -242,12 +244,12 @@ class Loading:
 
     def finish(self) -> None:
         """Load the rows; all their values must be known."""
-        shard, size = self.shard, len(self.arrays["origins"])
+        shard, store, size = self.shard, self.shard.store, len(self.arrays["origins"])
         read = spelling(
             self.packing, np.where(self.codes == UNKNOWN, 0, self.codes), self.begins, self.numbers
         )
-        shard.rows.reserve(size)
-        width, hashes = shard.packing.words, np.zeros(BLOCK, np.uint64)
+        store.rows.reserve(size)
+        width, hashes = store.packing.words, np.zeros(BLOCK, np.uint64)
         for first in range(0, size, BLOCK):
             count = min(BLOCK, size - first)
             kernel.translate(
@@ -256,16 +258,16 @@ class Loading:
                 count,
                 self.packing.words,
                 read,
-                shard.packing.columns,
+                store.packing.columns,
                 width,
-                shard.rows.words[first * width : (first + count) * width],
+                store.rows.words[first * width : (first + count) * width],
                 hashes,
             )
-        shard.rows.origins.restore(self.arrays["origins"], size)
-        shard.state[list(KEPT)] = self.arrays["state"]
+        store.rows.origins.restore(self.arrays["origins"], size)
+        store.state[list(KEPT)] = self.arrays["state"]
         *shard.begins, shard.end = self.head["layers"]
         shard.rules_before = Counter(self.head["rules"])
         shard.happened_before = frozenset(self.head["happened"])
-        shard.learned = [(int(row), 0, UNKNOWN, 0) for row in self.arrays["learned"]]
-        shard.counts.used[:] = 0
+        shard.model.learned = [(int(row), 0, UNKNOWN, 0) for row in self.arrays["learned"]]
+        shard.expander.counts.used[:] = 0
         shard.look_around()

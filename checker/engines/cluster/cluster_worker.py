@@ -14,11 +14,9 @@ from checker.engines.cluster.shard import Shard, ShardProgress
 from checker.engines.cluster.transfer import RowParcel
 from checker.engines.cluster.worker_links import Links
 from checker.engines.contract import CheckpointError, Inspect
-from checker.engines.fast import kernel as loops
-from checker.engines.fast.learned_model import AT, GATHERED
-from checker.engines.fast.row_graph import pending_in_space
+from checker.engines.fast.learned_model import AT
+from checker.engines.fast.row_graph import actions_of, pending_in_rows
 from checker.engines.fast.row_inspection import inspect_fast, is_still, truths
-from checker.engines.fast.row_survey import RowSurvey
 from checker.properties.inspections import Invariant
 from checker.properties.invariant_vacuity import asked
 from checker.properties.visited_statements import Visited
@@ -75,7 +73,7 @@ class Worker:
             sizes = [each.size for each in marks]
             if stage.configurations is not None and sum(sizes) > stage.configurations:
                 sizes = kept(before, sizes, stage.configurations)
-                shard.keep(sizes[shard.me])
+                shard.store.keep(sizes[shard.me])
                 marks = [each._replace(size=size) for each, size in zip(marks, sizes, strict=True)]
             if stage.is_over(marks):
                 return layer, shard.standing()
@@ -88,7 +86,7 @@ class Worker:
         """Move the rows to files in a folder of this machine; return why that failed, if it did, and the progress."""
         failure = ""
         try:
-            self.shard.spill(Path(folder))
+            self.shard.store.spill(Path(folder))
         except OSError as error:
             failure = str(error.strerror)
         return failure, self.shard.standing()
@@ -145,17 +143,17 @@ class Worker:
 
     def rows(self, numbers: list[int]) -> list[Row]:
         """Return the cells of some configurations."""
-        return [self.shard.row(number) for number in numbers]
+        return [self.shard.model.row(number) for number in numbers]
 
     def origin(self, row: int) -> tuple[int, int]:
         """Return the worker and the row from which a row was first reached."""
-        row, worker = divmod(self.shard.rows.origins.origin(row, self.shard.size), self.shard.workers)
+        row, worker = divmod(self.shard.store.origin(row), self.shard.workers)
         return worker, row
 
     def inspect(self, inspections: tuple[Inspect, ...]) -> tuple[Inspect, ...]:
         """Return the inspections, with the findings in its rows."""
         shard = self.shard
-        inspect_fast(RowSurvey(shard), inspections)
+        inspect_fast(shard.survey(), inspections)
         for each in inspections:
             if isinstance(each, Visited):
                 each.happened |= shard.happened_before
@@ -164,35 +162,35 @@ class Worker:
         return inspections
 
     def _answers_as_first(self, atoms: tuple[Atom, ...]) -> bool:
-        return asked(atoms, self.initial) == asked(atoms, self.shard.configuration(0))
+        return asked(atoms, self.initial) == asked(atoms, self.shard.model.configuration(0))
 
     # --- temporal properties ----------------------------------------------------------------------------------------
 
     def truths(self, formulas: Iterable[Proposition]) -> list[NDArray[np.bool_]]:
         """Return the truth of propositions in each row."""
-        survey = RowSurvey(self.shard)
+        survey = self.shard.survey()
         return [truths(survey, each, self.shard.size) for each in formulas]
 
     def is_still(self, atoms: tuple[Atom, ...]) -> bool:
         """Return whether everything that the atoms read equals its value in the initial configuration, in all rows."""
         if not self.shard.expanded:
             return True
-        return is_still(RowSurvey(self.shard), atoms) and self._answers_as_first(atoms)
+        return is_still(self.shard.survey(), atoms) and self._answers_as_first(atoms)
 
     def pending(self) -> dict[Request, NDArray[Any]]:
         """Return the rows in which each request is pending."""
-        return pending_in_space(RowSurvey(self.shard))
+        return pending_in_rows(self.shard.survey())
 
     def edges(self, first: int, most: int) -> Edges:
         """Return the transitions of a range of rows."""
-        shard = self.shard
+        shard, expander, state = self.shard, self.shard.expander, self.shard.store.state
         until = min(first + most, shard.expanded)
-        shard.state[AT], found = min(first, until), []
-        while shard.state[AT] < until:
-            known = shard.gather(until)
+        state[AT], found = min(first, until), []
+        while state[AT] < until:
+            known = expander.gather(until)
             found.append(self._point())
             if not known:
-                shard.go_on()
+                expander.learn()
         edges = self._edges(found)
         _, _, owners, targets, _ = edges
         answers = self.links.exchange(self._find(self.links.exchange(shard.parcels())))
@@ -203,30 +201,24 @@ class Worker:
 
     def _point(self) -> tuple[NDArray[np.int64], NDArray[np.int32], NDArray[np.int32], NDArray[np.int64]]:
         """Return the transitions of a batch; put their targets on other workers into the outbox."""
-        shard, count = self.shard, int(self.shard.state[GATHERED])
-        shard.state[GATHERED] = 0
-        batch, width = shard.batch, shard.packing.words
+        shard, batch = self.shard, self.shard.expander.batch
+        count = shard.expander.gathered()
         owners = shard.owners_of(batch.words, batch.origins[:count])
         targets = self._found(count)
         others = np.flatnonzero(owners != shard.me)
-        shard.outbox.add(batch.words.reshape(-1, width)[others], batch.origins[others], owners[others])
+        shard.send(batch, others, owners[others])
         return batch.origins[:count].copy(), batch.steps[:count].copy(), owners, targets
 
     def _found(self, count: int) -> NDArray[np.int64]:
         """Return the row number of each successor in the batch, less than 0 for none."""
-        shard, found = self.shard, np.zeros(count, np.int64)
-        loops.look_up(shard.rows.words, shard.table.room, *shard.completing, shard.batch, found, shard.state)
-        return found
+        shard = self.shard
+        return shard.store.look_up(shard.expander.batch, count, shard.model.making)
 
     def _edges(self, found: Sequence[tuple[NDArray[Any], ...]]) -> Edges:
-        numbers: dict[Label, int] = {}
-        learner = self.shard.learner
-        action_of = np.zeros(len(learner.leaves.rule), np.int32)
-        for step, label in learner.steps.items():
-            action_of[step] = numbers.setdefault(label, len(numbers))
+        action_of, labels = actions_of(self.shard.model.learner)
         nothing = (np.zeros(0, np.int64), np.zeros(0, np.int32), np.zeros(0, np.int32), np.zeros(0, np.int64))
         rows, steps, owners, targets = (np.concatenate(each) for each in zip(nothing, *found, strict=True))
-        return rows, action_of[steps], owners, targets, tuple(numbers)
+        return rows, action_of[steps], owners, targets, labels
 
     def _find(self, parcels: Sequence[RowParcel]) -> list[NDArray[np.int64]]:
         """Return, for each worker, the own row numbers of the rows in its parcel, less than 0 for none."""

@@ -4,7 +4,6 @@ In each round it expands some rows of its layer. Successors of other workers lea
 theirs. The transport of parcels is elsewhere.
 """
 
-import sys
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -18,15 +17,16 @@ from bigraphs.resources import memory_taken
 from checker.engines.cluster import kernel
 from checker.engines.cluster.row_keys import Keys
 from checker.engines.cluster.transfer import ColumnUpdate, Dictionary, RowParcel, SentValues
-from checker.engines.fast import kernel as loops
 from checker.engines.fast import repacking
 from checker.engines.fast.columns import WORD, Packing, shifts
 from checker.engines.fast.effects import Deeper, Varies
-from checker.engines.fast.learned_model import AT, CROWDS, CUT, EXPANDED, GATHERED, LIMIT, SIZE
+from checker.engines.fast.expander import Expander
+from checker.engines.fast.learned_model import AT, EXPANDED, SIZE, SuccessorBatch
 from checker.engines.fast.learner import Learner
+from checker.engines.fast.model import Model
 from checker.engines.fast.origins import Elsewhere
-from checker.engines.fast.rows import Rows
-from checker.engines.fast.space import FIRST_ROWS, MOST_ROWS, Space
+from checker.engines.fast.row_survey import RowSurvey
+from checker.engines.fast.store import FIRST_ROWS, RowFormat, Store
 from semantics.state.configuration import Configuration
 
 SENT = 1 << 17
@@ -89,12 +89,14 @@ class Outbox:
     """Successors that belong to other workers.
 
     Attributes:
+        packing: The packing of the rows.
         rows: Packed rows.
         origins: The origin of each.
         owners: The worker of each.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, packing: Packing) -> None:
+        self.packing = packing
         self.rows: list[NDArray[np.uint64]] = []
         self.origins: list[NDArray[np.uint32]] = []
         self.owners: list[NDArray[np.int32]] = []
@@ -105,68 +107,84 @@ class Outbox:
         self.origins.append(origins.astype(np.uint32))
         self.owners.append(owners)
 
-    def repack(self, old: Packing, new: Packing) -> None:
+    def repack(self, new: Packing) -> None:
         """Repack the rows in it."""
-        packed = [np.zeros((len(rows), new.words), np.uint64) for rows in self.rows]
+        packed, old = [np.zeros((len(rows), new.words), np.uint64) for rows in self.rows], self.packing
         for rows, to in zip(self.rows, packed, strict=True):
             flat = to.ravel()
             flat[: rows.size] = rows.ravel()
             repacking.repack(flat, len(rows), shifts(old, new), old.words, new.words)
-        self.rows = packed
+        self.rows, self.packing = packed, new
 
-    def taken_out(self, peer: int, words: int) -> tuple[NDArray[np.uint64], NDArray[np.uint32]]:
+    def taken_out(self, peer: int) -> tuple[NDArray[np.uint64], NDArray[np.uint32]]:
         """Return the rows for one worker, in order, with their origins."""
         which = [np.flatnonzero(owners == peer) for owners in self.owners]
-        rows = [np.zeros((0, words), np.uint64)]
+        rows = [np.zeros((0, self.packing.words), np.uint64)]
         rows += [each[chosen] for each, chosen in zip(self.rows, which, strict=True)]
         origins = [np.zeros(0, np.uint32)]
         origins += [each[chosen] for each, chosen in zip(self.origins, which, strict=True)]
         return np.concatenate(rows).ravel(), np.concatenate(origins)
 
 
-class Shard(Space):
+class Shard:
     """The rows of one worker.
 
     Attributes:
         me: The worker's number.
         workers: The number of workers.
+        store: Its rows. An origin may be another worker's row: its number is row · workers + worker.
+        model: The rules that it has learned.
+        expander: Makes the successors of its rows.
+        keys: The keys of values, from which a row's worker is computed.
+        outbox: The successors that wait for sending.
         begins: The first row of each layer, up to the one in expansion.
         end: The end of that layer.
+        sent: The bytes of rows sent so far.
         rules_before: The number of transitions of each rule before the resumed checkpoint.
         happened_before: The environment's events before it.
         told: The codes sent so far to each worker.
         dictionaries: The codes received from each worker.
+        lately: The cache of rows sent lately, in the present packing.
         column_at: The column of each bit of a row, in the packing `located_in`.
         varying: The columns with several values in that packing.
     """
-
-    ORIGINS = Elsewhere
-    """An origin may be another worker's row: its number is row · workers + worker."""
-
-    PLAIN = sys.maxsize  # rows travel between workers
 
     def __init__(self, initial: Configuration, pending: int, me: int, workers: int) -> None:
         self.me = me
         self.workers = workers
         self.sent = 0
-        self.outbox = Outbox()
         learner = Learner(initial.setting, initial.state, pending)  # type: ignore[arg-type]  # a stored one
+        self.store = Store(form=RowFormat(Elsewhere, compressible=False))  # rows travel between workers
+        self.model = Model(learner, self.store)
+        self.expander = Expander(self.model)
         self.keys = Keys(learner.columns)
+        self.outbox = Outbox(self.store.packing)
         self.located_in: Packing | None = None
-        super().__init__(learner, None)
+        self.model.followers.append(self._see)
+        self.model.see()
         self.start()
+
+    @property
+    def size(self) -> int:
+        """The number of rows."""
+        return self.store.size
+
+    @property
+    def expanded(self) -> int:
+        """The number of expanded rows."""
+        return self.store.expanded
 
     # --- start ------------------------------------------------------------------------------------------------------
 
     def start(self) -> None:
         """Begin with the initial configuration, or without rows if it is another worker's."""
         self.clear()
-        first = self.packed(self.learner.columns.codes(self.learner.still))
-        self.rows.words[: len(first)] = first
+        learner, store = self.model.learner, self.store
+        first = store.packing.packed(learner.columns.codes(learner.still))
+        store.rows.words[: len(first)] = first
         self.end = int(self.owners_of(first, np.zeros(1, np.int64))[0] == self.me)
-        self.state[SIZE] = self.end
-        self._rebuild(2 * FIRST_ROWS)
-        self._make_room(len(self.batch.hashes))
+        store.state[SIZE] = self.end
+        self.look_around()
 
     def clear(self) -> None:
         """Forget all rows, and all codes sent and received; the columns' values stay.
@@ -174,49 +192,34 @@ class Shard(Space):
         The trees are discarded, too: the rows at which they were learned are gone, and a checkpoint must name such
         rows.
         """
-        self.learner.forget()
-        self.state[[AT, EXPANDED, SIZE, CUT, CROWDS, GATHERED]] = 0
-        self.state[LIMIT] = MOST_ROWS
-        self.rows = Rows(self.packing.words, self.rows.room, self.ORIGINS)
-        self.learner.columns.codes(self.learner.still)  # creates the columns that only the first row needs
-        self._see()
-        self.counts.used[:] = 0
+        model = self.model
+        model.forget()
+        self.store.clear()
+        model.learner.columns.codes(model.learner.still)  # creates the columns that only the first row needs
+        model.see()
+        self.expander.counts.used[:] = 0
         self.begins, self.end = [0], 0
-        self.learned = []
         self.rules_before: Counter[str] = Counter()
         self.happened_before: frozenset[str] = frozenset()
         self.told = [SentValues() for _ in range(self.workers)]
         self.dictionaries = [Dictionary() for _ in range(self.workers)]
-        self.outbox = Outbox()
+        self.outbox = Outbox(self.store.packing)
         self._forget_sent()
 
-    def packed(self, codes: list[int]) -> NDArray[np.uint64]:
-        """Return the packed row of a list of codes."""
-        where = self.packing
-        words = np.zeros(where.words, np.uint64)
-        for word, shift, code in zip(where.word, where.shift, codes, strict=True):
-            words[word] |= np.uint64(code) << shift
-        return words
-
     def _see(self) -> None:
-        """Rebuild the loops' tables from everything learned."""
-        super()._see()
+        """Keep up with the model, and with the packing of the rows."""
         self.keys.refresh()
-        if self.located_in is not self.packing:
-            self.column_at, self.located_in = column_at(self.packing), self.packing
-            self.varying = np.flatnonzero(self.packing.mask).astype(np.uint64)
-
-    def _pack(self) -> None:
-        """Repack the rows, and those that wait for sending, if a column has outgrown its bits."""
-        old = self.packing
-        super()._pack()
-        new = self.packing
-        if new.words != old.words or not np.array_equal(new.columns[: len(old.columns)], old.columns):
-            self.outbox.repack(old, new)
+        where = self.store.packing
+        if self.located_in is where:
+            return
+        self.column_at, self.varying = column_at(where), np.flatnonzero(where.mask).astype(np.uint64)
+        if self.located_in is None or not where.extends(self.located_in):
+            self.outbox.repack(where)
             self._forget_sent()
+        self.located_in = where
 
     def _forget_sent(self) -> None:
-        self.lately = np.zeros(SENT * (self.packing.words + 1), np.uint64)
+        self.lately = np.zeros(SENT * (self.store.packing.words + 1), np.uint64)
 
     # --- rounds ---------------------------------------------------------------------------------------------------
 
@@ -224,13 +227,13 @@ class Shard(Space):
         """Expand at most `most` rows of a layer, and return a parcel for each worker."""
         self.enter(layer)
         until = min(self.expanded + most, self.end)
-        self.state[AT] = self.expanded
+        self.store.state[AT] = self.expanded
         while self.expanded < until:
-            self._make_room(len(self.batch.hashes))
-            known = self.gather(until)
+            self.store.make_room(self.expander.successors)
+            known = self.expander.gather(until)
             self._deal()
             if not known:
-                self._miss()
+                self.expander.learn()
         return self.parcels()
 
     def enter(self, layer: int) -> None:
@@ -241,12 +244,11 @@ class Shard(Space):
 
     def _deal(self) -> None:
         """Store the batch's rows of this worker, and put the others into the outbox."""
-        batch, count = self.batch, int(self.state[GATHERED])
+        store, expander = self.store, self.expander
+        batch, count = expander.batch, expander.gathered()
         chosen, owners = np.zeros(count, np.int64), np.zeros(count, np.int32)
         found = kernel.deal(
-            self.rows.words,
-            self.rows.origins.loops,
-            self.table.room,
+            *store.arrays,
             batch,
             count,
             self.owning(),
@@ -254,36 +256,38 @@ class Shard(Space):
             self.lately,
             chosen,
             owners,
-            self.counts.used,
-            self.state,
+            expander.counts.used,
+            store.state,
         )
-        self.state[GATHERED] = 0
-        self.state[EXPANDED] = self.state[AT]
-        others = chosen[:found]
-        rows = batch.words.reshape(-1, self.packing.words)[others]
-        self.outbox.add(rows, batch.origins[others], owners[:found])
+        store.state[EXPANDED] = store.state[AT]
+        self.send(batch, chosen[:found], owners[:found])
+
+    def send(self, batch: SuccessorBatch, which: NDArray[np.int64], owners: NDArray[np.int32]) -> None:
+        """Put some successors of a batch into the outbox; each has another worker."""
+        rows = batch.words.reshape(-1, self.store.packing.words)[which]
+        self.outbox.add(rows, batch.origins[which], owners)
 
     def owning(self) -> kernel.Owning:
         """Return the data that assigns rows to workers."""
-        columns, keys = self.packing.columns, self.keys
+        columns, keys = self.store.packing.columns, self.keys
         return kernel.Owning(columns, self.varying, self.column_at, keys.keys, keys.begins, self.workers)
 
     def owners_of(self, rows: NDArray[np.uint64], origins: NDArray[np.int64]) -> NDArray[np.int32]:
         """Return the worker of each row; `origins` are own rows from which they were reached."""
-        owners = np.zeros(len(origins), np.int32)
-        kernel.owners_of(self.rows.words, origins, rows, self.packing.words, self.owning(), owners)
+        owners, store = np.zeros(len(origins), np.int32), self.store
+        kernel.owners_of(store.rows.words, origins, rows, store.packing.words, self.owning(), owners)
         return owners
 
     def parcels(self, *, always: bool = False) -> tuple[RowParcel, ...]:
         """Return the waiting rows, a parcel for each worker; new values go with the rows, or to all if `always`."""
         found = []
         for peer in range(self.workers):
-            rows, origins = self.outbox.taken_out(peer, self.packing.words)
+            rows, origins = self.outbox.taken_out(peer)
             tells = peer != self.me and (always or len(origins))
-            news = self.told[peer].news(self.learner.columns) if tells else ()
-            found.append(RowParcel(news, self.packing, rows, origins))
+            news = self.told[peer].news(self.model.learner.columns) if tells else ()
+            found.append(RowParcel(news, self.store.packing, rows, origins))
         self.sent += sum(parcel.bytes for parcel in found)
-        self.outbox = Outbox()
+        self.outbox = Outbox(self.store.packing)
         return tuple(found)
 
     def take(self, *parcels: RowParcel) -> None:
@@ -291,8 +295,7 @@ class Shard(Space):
         self.hear(parcels)
         for peer, parcel in enumerate(parcels):
             for count in self.translated(peer, parcel):
-                arrays = (self.rows.words, self.rows.origins.loops, self.table.room)
-                loops.store(*arrays, *self.completing, self.batch, 0, count, self.state)
+                self.store.add(self.expander.batch, (0, count), self.model.making)
 
     def hear(self, parcels: Sequence[RowParcel]) -> None:
         """Add the values that the others have sent."""
@@ -300,11 +303,11 @@ class Shard(Space):
         for peer, entry in heard:
             self._note(self.dictionaries[peer], entry)
         if heard:
-            self._see()
+            self.model.see()
 
     def _note(self, dictionary: Dictionary, entry: ColumnUpdate) -> None:
         """Add another worker's values; a cell that varies there varies here, too."""
-        learner, cell = self.learner, entry.place[0]
+        learner, cell = self.model.learner, entry.place[0]
         if len(entry.place) == 3 and learner.columns.dig(cell, entry.place[1] + 1):
             learner.relearn(Deeper(cell))
         number = learner.columns.number(entry.place)
@@ -317,73 +320,59 @@ class Shard(Space):
         """Put the rows of a parcel into the batch, some at a time; yield their number."""
         if not len(parcel):
             return
-        room, rows = len(self.batch.hashes), writable(parcel.rows)
-        read = spelling(parcel.packing, *self.dictionaries[peer].arrays())
+        store, batch, rows = self.store, self.expander.batch, writable(parcel.rows)
+        read, room = spelling(parcel.packing, *self.dictionaries[peer].arrays()), len(batch.hashes)
         for first in range(0, len(parcel), room):
-            self._make_room(room)
             origins = parcel.origins[first : first + room].astype(np.int64) * self.workers + peer
-            self.batch.origins[: len(origins)] = origins
-            kernel.translate(
-                rows,
-                first,
-                len(origins),
-                parcel.packing.words,
-                read,
-                self.packing.columns,
-                self.packing.words,
-                self.batch.words,
-                self.batch.hashes,
-            )
+            batch.origins[: len(origins)] = origins
+            where = (store.packing.columns, store.packing.words)
+            made = (batch.words, batch.hashes)
+            kernel.translate(rows, first, len(origins), parcel.packing.words, read, *where, *made)
             yield len(origins)
 
     # --- learning ---------------------------------------------------------------------------------------------------
 
-    def go_on(self) -> None:
-        """Learn the miss at which the loops stopped."""
-        self._miss()
-
     def learn_at(self, codes: list[int]) -> None:
         """Learn from a row given by its codes, which replaces all rows."""
-        self.rows.words[: self.packing.words] = self.packed(codes)
-        self.state[SIZE], self.state[AT] = 1, 0
-        while not self.state[AT]:
-            known = self.gather(1)
-            self.state[GATHERED] = 0
+        store, expander = self.store, self.expander
+        store.rows.words[: store.packing.words] = store.packing.packed(codes)
+        store.state[[SIZE, AT]] = 1, 0
+        while not store.state[AT]:
+            known = expander.gather(1)
+            expander.gathered()
             if not known:
-                self._miss()
-        self.state[SIZE], self.state[AT] = 0, 0
+                expander.learn()
+        store.state[[SIZE, AT]] = 0, 0
 
     def look_around(self) -> None:
         """Rebuild the table after rows were loaded in place."""
-        self._rebuild(2 * max(self.size, FIRST_ROWS))
-        self._make_room(len(self.batch.hashes))
+        self.store.rebuild(2 * max(self.size, FIRST_ROWS))
+        self.store.make_room(self.expander.successors)
 
     def has_origins_in(self, boundaries: Sequence[tuple[int, ...]]) -> bool:
         """Return whether each row's origin is in the previous layer, given the boundaries of all workers' layers.
 
         The initial configuration, alone in its layer, is its own origin.
         """
-        first = self.rows.origins.room[: self.boundaries[1]]
+        first = self.store.rows.origins.room[: self.boundaries[1]]
         if sum(each[1] for each in boundaries) != 1 or np.any(first != self.me):
             return False
         for layer, (begin, end) in enumerate(pairwise(self.boundaries[1:])):
-            rows, workers = np.divmod(self.rows.origins.room[begin:end], np.uint64(self.workers))
+            rows, workers = np.divmod(self.store.rows.origins.room[begin:end], np.uint64(self.workers))
             begins, ends = (np.array([each[k] for each in boundaries], np.uint64) for k in (layer, layer + 1))
             if not np.all((begins[workers] <= rows) & (rows < ends[workers])):
                 return False
         return True
 
-    # --- limits, counts -------------------------------------------------------------------------------------------
+    # --- counts -------------------------------------------------------------------------------------------
 
-    def keep(self, size: int) -> None:
-        """Keep the first `size` rows, and add no more: the limit of configurations is met."""
-        self.state[SIZE] = self.state[LIMIT] = size
-        self.state[CUT] += 1
-        self._rebuild(len(self.table.room))
-
-    def rules(self, *, followed: bool = True) -> Counter[str]:
+    def rules(self) -> Counter[str]:
         """Return the number of transitions of each rule."""
-        return super().rules(followed=followed) + self.rules_before
+        return self.model.rules(self.expander.counts.used) + self.rules_before
+
+    def survey(self) -> RowSurvey:
+        """Return a survey of its expanded rows."""
+        return RowSurvey(self.model, self.expander.counts.used.copy())
 
     @property
     def boundaries(self) -> tuple[int, ...]:
@@ -397,10 +386,10 @@ class Shard(Space):
             self.expanded,
             self.end,
             sum(self.rules().values()),
-            self.was_cut,
-            self.is_crowded,
-            self.learner.runs,
+            self.store.was_cut,
+            self.expander.is_crowded,
+            self.model.learner.runs,
             memory_taken(),
-            self.bytes_used,
+            self.store.bytes_used,
             self.sent,
         )

@@ -9,7 +9,7 @@ import numpy as np
 
 from checker.engines.fast.bits import WORD
 from checker.engines.fast.jit_decorators import inner
-from checker.engines.fast.learned_model import ALPHA, TREE, Ints, LearnedModel, State, code_at, walk
+from checker.engines.fast.learned_model import TREE, Ints, LearnedModel, State, code_at, walk
 from checker.engines.fast.table import Words
 
 MOST_HERE = 8 * WORD
@@ -106,8 +106,8 @@ class Members(NamedTuple):
 def meet(m: LearnedModel, r: Members, here: Words, state: State) -> int:
     """Note the actors of a row; return their number, or -1 if something is not learned yet."""
     group = np.int64(0)
-    if state[ALPHA] >= 0:
-        group = code_at(here, 0, m.columns, state[ALPHA])
+    if m.alpha >= 0:
+        group = code_at(here, 0, m.columns, m.alpha)
     count, actors_here = np.int64(0), r.here
     for k in range(r.trees_from[group], r.trees_from[group + 1]):
         reference = walk(here, 0, m.root[r.trees[k]], m.nodes, m.next, state)

@@ -20,8 +20,9 @@ from checker.engines.archive import Kinds, read_archive, write_archive
 from checker.engines.contract import CheckpointError
 from checker.engines.fast.columns import Packing
 from checker.engines.fast.learned_model import CROWDS, CUT, EXPANDED, LIMIT, SIZE
+from checker.engines.fast.model import Model
 from checker.engines.fast.rows import Rows
-from checker.engines.fast.space import Space
+from checker.engines.fast.search import Search
 from semantics.state.canonical import canonical
 
 SCHEMA = "bigactors.checkpoint/6"
@@ -42,7 +43,7 @@ ROWS: Final[Kinds] = {
     "packing": np.uint64,
     "learned": np.int64,
 }
-"""The arrays of the rows of a space, and of what was learned from them."""
+"""The arrays of the rows of a model, and of what was learned from them."""
 
 KINDS: Final[Kinds] = {
     **ROWS,
@@ -87,7 +88,7 @@ def is_time(seconds: object) -> bool:
     return type(seconds) in {int, float} and 0 <= seconds < math.inf  # type: ignore[operator]  # a number
 
 
-def save(space: Space, journey: Journey, digest: str, path: Path) -> None:
+def save(search: Search, journey: Journey, digest: str, path: Path) -> None:
     """Write a checkpoint; it replaces the previous one atomically.
 
     Raises:
@@ -96,89 +97,91 @@ def save(space: Space, journey: Journey, digest: str, path: Path) -> None:
     head = {
         "schema": SCHEMA,
         "digest": digest,
-        "limit": int(space.state[LIMIT]),
-        "words": space.packing.words,
+        "limit": int(search.store.state[LIMIT]),
+        "words": search.store.packing.words,
         "depth": journey.depth,
         "layer_end": journey.layer_end,
         "seconds": journey.seconds,
         "layers": journey.layers,
-        "columns": digest_of_columns(space),
+        "columns": digest_of_columns(search.model),
     }
+    expander = search.expander
     arrays = (
-        *kept_rows(space),
-        space.counts.used,
-        space.met.used if space.choosing is not None else space.met.used[:0],
-        *_paths(space),
-        space.state[list(KEPT)],
+        *kept_rows(search.model),
+        expander.counts.used,
+        expander.met.used if search.choosing is not None else expander.met.used[:0],
+        *_paths(search),
+        search.store.state[list(KEPT)],
     )
     write_archive(path, head, KINDS, arrays)
 
 
-def kept_rows(space: Space) -> tuple[NDArray[Any], ...]:
-    """Return the rows of a space, and what was learned from them, as arrays (see `ROWS`)."""
+def kept_rows(model: Model) -> tuple[NDArray[Any], ...]:
+    """Return the rows of a model, and what was learned from them, as arrays (see `ROWS`)."""
+    store, rows = model.store, model.store.rows
     return (
-        space.rows.words[: space.size * space.rows.kept],
-        *space.rows.interned,
-        space.rows.origins.kept(space.size),
-        space.packing.columns[: 3 * len(space.learner.columns)],
-        np.array(space.learned, np.int64),
+        rows.words[: store.size * rows.kept],
+        *rows.interned,
+        rows.origins.kept(store.size),
+        store.packing.columns[: 3 * len(model.learner.columns)],
+        np.array(model.learned, np.int64),
     )
 
 
-def restore_rows(space: Space, words: int, size: int, arrays: Mapping[str, NDArray[Any]]) -> None:
-    """Continue in a space from the rows of another one of the same mission.
+def restore_rows(model: Model, words: int, size: int, arrays: Mapping[str, NDArray[Any]]) -> None:
+    """Continue in a model from the rows of another one of the same mission.
 
     Raises:
-        ValueError, IndexError: The arrays are not those of such a space.
+        ValueError, IndexError: The arrays are not those of such a model.
     """
     learned = list(map(tuple, arrays["learned"].reshape(-1, 4).tolist()))
     where = Packing(words, arrays["packing"])
     if not where.is_sound:
         raise ValueError("its rows lack some of its columns")
     kept = (arrays[each] for each in ("rows", "origins", "pieces", "nodes"))
-    space.restore(where, Rows.of(space.ORIGINS, where.words, size, *kept), size, learned)
+    model.restore(where, Rows.of(model.store.format.origins, where.words, size, *kept), size, learned)
 
 
-def _paths(space: Space) -> tuple[NDArray[Any], ...]:
+def _paths(search: Search) -> tuple[NDArray[Any], ...]:
     """Return the stored paths of partial-order reduction; empty without it."""
-    if space.choosing is None:
+    if search.choosing is None:
         return (np.zeros(0, np.uint64),) * len(PATHS)
-    return space.choosing.paths.kept(space.size, space.expanded)
+    return search.choosing.paths.kept(search.size, search.expanded)
 
 
-def resume(space: Space, digest: str, path: Path) -> Journey:
-    """Continue in a new space from a checkpoint.
+def resume(search: Search, digest: str, path: Path) -> Journey:
+    """Continue in a new search from a checkpoint.
 
     Raises:
         CheckpointError: It is damaged, or of another mission, variation, limit or version.
     """
     head, arrays = read_archive(path, SCHEMA, KINDS)
-    if head.get("digest") != digest or head.get("limit") != int(space.state[LIMIT]):
+    store, expander = search.store, search.expander
+    if head.get("digest") != digest or head.get("limit") != int(store.state[LIMIT]):
         raise CheckpointError(f"{path}: this checkpoint is of another mission, variation, limit or version")
     try:
         journey = Journey(head["depth"], head["layer_end"], head["seconds"], tuple(head["layers"]))
-        _check(arrays, journey, int(space.state[LIMIT]))
-        size = int(arrays["state"][1])
-        restore_rows(space, head["words"], size, arrays)
-        if space.rows.origins.origin(size - 1, size) > arrays["state"][0]:
+        _check(arrays, journey, int(store.state[LIMIT]))
+        expanded, size = map(int, arrays["state"][:2])
+        restore_rows(search.model, head["words"], size, arrays)
+        if store.origin(size - 1) > expanded:
             raise ValueError("some row was reached from a later one")
-        choosing, counts, met = space.choosing, arrays["counts"], arrays["met"]
+        choosing, counts, met = search.choosing, arrays["counts"], arrays["met"]
         if choosing is not None:
-            expanded = int(arrays["state"][0])
             paths = tuple(arrays[name] for name in PATHS)
             choosing.paths.restore(paths, size, expanded, len(choosing.everyone))
-            _check_counts(space, met, arrays["state"])
+            _check_counts(search, met, arrays["state"])
             taken = np.bincount(choosing.paths.steps(), minlength=len(counts))
             if np.any(counts > met) or (choosing.paths.has_transitions and not np.array_equal(taken, counts)):
                 raise ValueError("it followed other transitions than it counted")
-        _check_counts(space, counts, arrays["state"])
-        _recount(space, counts if choosing is None else met, arrays["state"])
-        space.met.used[: len(met)] = met
-        space.counts.used[: len(counts)] = counts
-        space.state[list(KEPT)] = arrays["state"]
+        _check_counts(search, counts, arrays["state"])
+        _recount(search, counts if choosing is None else met, arrays["state"])
+        expander.met.used[: len(met)] = met
+        expander.counts.used[: len(counts)] = counts
+        store.state[list(KEPT)] = arrays["state"]
     except (ValueError, IndexError, KeyError, TypeError) as error:
         raise CheckpointError(f"{path}: this checkpoint is damaged: {error}") from error
-    if digest_of_columns(space) != head["columns"]:
+    if digest_of_columns(search.model) != head["columns"]:
         raise CheckpointError(
             f"{path}: the rules learned from this checkpoint differ from those recorded in it"
         )
@@ -197,43 +200,48 @@ def _check(arrays: dict[str, NDArray[Any]], journey: Journey, limit: int) -> Non
         raise ValueError("its counts of omitted steps are not possible")
 
 
-def _check_counts(space: Space, counts: NDArray[np.int64], state: NDArray[np.int64]) -> None:
+def _check_counts(search: Search, counts: NDArray[np.int64], state: NDArray[np.int64]) -> None:
     """Raise ValueError unless the counts are possible: a row takes each transition at most once."""
     expanded, size = int(state[0]), int(state[1])
-    if len(counts) != len(space.learner.leaves.rule) or np.any(counts < 0) or np.any(counts > expanded):
+    if (
+        len(counts) != len(search.model.learner.leaves.rule)
+        or np.any(counts < 0)
+        or np.any(counts > expanded)
+    ):
         raise ValueError("its counts of transitions are wrong")
     if int(counts.sum()) < size - 1:
         raise ValueError("it has more rows than transitions")
 
 
-def _recount(space: Space, counts: NDArray[np.int64], state: NDArray[np.int64]) -> None:
+def _recount(search: Search, counts: NDArray[np.int64], state: NDArray[np.int64]) -> None:
     """Recompute the transitions of expanded rows; raise ValueError if counts or rows differ.
 
     A transition may have been forgotten and learned again under another number, so transitions are compared by label.
-    In a large space only the first and the last rows are recomputed; the counts must then be at least as large.
+    In a large search only the first and the last rows are recomputed; the counts must then be at least as large.
     """
     expanded, size, cut = map(int, state[:3])
     half = RECOUNTED // 2
     parts = (range(expanded),) if expanded <= RECOUNTED else (range(half), range(expanded - half, expanded))
     found, reached = Counter[int](), np.zeros(size, np.bool_)
     reached[0] = True
-    for _, steps, targets in (each for part in parts for each in space.edges(part)):
+    for _, steps, targets in (each for part in parts for each in search.expander.edges(part)):
         taken = np.bincount(steps)
         found.update({int(step): int(taken[step]) for step in np.flatnonzero(taken)})
-        if not cut and space.choosing is None and np.any(targets < 0):
+        if not cut and search.choosing is None and np.any(targets < 0):
             raise ValueError("it lacks successors of its rows")
         reached[targets[targets >= 0]] = True
     rest = expanded - sum(map(len, parts))
-    told, again = _by_label(space, dict(enumerate(counts.tolist()))), _by_label(space, found)
+    told, again = _by_label(search, dict(enumerate(counts.tolist()))), _by_label(search, found)
     if told != again and not (rest and told >= again):
         raise ValueError("its counts of transitions are wrong")
     if not rest and not reached.all():
         raise ValueError("some row is no successor of an earlier row")
 
 
-def _by_label(space: Space, counts: Mapping[int, int]) -> Counter[tuple[int, str]]:
+def _by_label(search: Search, counts: Mapping[int, int]) -> Counter[tuple[int, str]]:
     """Return the number of times that transitions were taken, by rule and label."""
-    rules, steps = space.learner.leaves.rule.room, space.learner.steps
+    learner = search.model.learner
+    rules, steps = learner.leaves.rule.room, learner.steps
     found = Counter[tuple[int, str]]()
     for step, count in counts.items():
         if count:
@@ -241,14 +249,14 @@ def _by_label(space: Space, counts: Mapping[int, int]) -> Counter[tuple[int, str
     return found
 
 
-def digest_of_columns(space: Space) -> str:
+def digest_of_columns(model: Model) -> str:
     """Return a digest of the values of all columns, in order: of everything that rows are made of."""
     found = sha256()
-    for line in _lines(space):
+    for line in _lines(model):
         found.update(line.encode("utf-8", "surrogatepass"))
     return found.hexdigest()
 
 
-def _lines(space: Space) -> Iterator[str]:
-    for column in space.learner.columns.all:
+def _lines(model: Model) -> Iterator[str]:
+    for column in model.learner.columns.all:
         yield canonical((column.place, tuple(column.values)))

@@ -234,6 +234,18 @@ class Packing:
         found: list[int] = ((words[self.word] >> self.shift) & self.mask).tolist()
         return found
 
+    def extends(self, other: "Packing") -> bool:
+        """Return whether the columns of another packing are at the same positions in this one."""
+        known = self.columns[: len(other.columns)]
+        return self.words == other.words and np.array_equal(known, other.columns)
+
+    def packed(self, codes: Sequence[int]) -> NDArray[np.uint64]:
+        """Return the row with a code for each column."""
+        words = np.zeros(self.words, np.uint64)
+        for word, shift, code in zip(self.word, self.shift, codes, strict=True):
+            words[word] |= np.uint64(code) << shift
+        return words
+
     def holds(self, sizes: Sequence[int]) -> bool:
         """Return whether every column has enough bits for `sizes` values."""
         return bool(np.all(np.array(sizes, np.uint64) - np.uint64(1) <= self.mask))

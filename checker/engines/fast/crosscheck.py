@@ -3,8 +3,8 @@
 from collections import Counter
 from collections.abc import Iterable
 
+from checker.engines.fast.expander import Expander
 from checker.engines.fast.learner import is_crowded
-from checker.engines.fast.space import Space
 from checker.limits import look
 from checker.reduction.footprint_check import heed
 from checker.reduction.reducer import Reduced
@@ -17,7 +17,7 @@ class Disagreement(Exception):
     """The learned successors differ from the interpreter's: a bug of this program."""
 
 
-def crosscheck(space: Space, numbers: Iterable[int], reduce: Reduced | None = None) -> None:
+def crosscheck(expander: Expander, numbers: Iterable[int], reduce: Reduced | None = None) -> None:
     """Compare learned successors of rows, and the assumptions of reductions and race monitor, with the interpreter.
 
     Raises:
@@ -25,32 +25,34 @@ def crosscheck(space: Space, numbers: Iterable[int], reduce: Reduced | None = No
     """
     for number in numbers:
         look()
-        compare(space, number, reduce)
-        heed(space.configuration(number))
+        compare(expander, number, reduce)
+        heed(expander.model.configuration(number))
         if reduce is not None:
-            reduce.hold(space.configuration(number))
+            reduce.hold(expander.model.configuration(number))
 
 
-def compare(space: Space, number: int, reduce: Reduced | None = None) -> None:
+def compare(expander: Expander, number: int, reduce: Reduced | None = None) -> None:
     """Compare the learned successors of one configuration with the interpreter's, by rule and number.
 
     Under symmetry reduction, the interpreter's successors are first replaced by their representatives.
     """
-    c = space.configuration(number)
+    c = expander.model.configuration(number)
     learned: Counter[tuple[str, Configuration]] = Counter()
     left_out = 0
-    for _, steps, targets in space.edges(range(number, number + 1)):
+    for _, steps, targets in expander.edges(range(number, number + 1)):
         for step, target in zip(steps, targets, strict=True):
             if target < 0:
                 left_out += 1  # beyond the limit of configurations, or deferred by partial-order reduction
             else:
-                learned[space.learner.steps[int(step)].rule, space.configuration(int(target))] += 1
+                learned[
+                    expander.model.learner.steps[int(step)].rule, expander.model.configuration(int(target))
+                ] += 1
     is_left = any(
-        is_crowded(c, a, space.learner.pending) for a in c.alpha.names()
+        is_crowded(c, a, expander.model.learner.pending) for a in c.alpha.names()
     )  # then the row has no successors
     represent = (lambda target: target) if reduce is None else reduce.representative
     ruled = Counter((t.label.rule, represent(t.target)) for t in (() if is_left else expand(c).transitions))
-    unexpected = left_out > 0 and not space.was_cut and space.choosing is None
+    unexpected = left_out > 0 and not expander.store.was_cut and expander.choosing is None
     if learned - ruled or (ruled - learned).total() != left_out or unexpected:
         wrong = ", ".join(sorted({rule for rule, _ in (learned - ruled) + (ruled - learned)}))
         raise Disagreement(f"configuration {number}: {wrong}\n{print_configuration(c)}")

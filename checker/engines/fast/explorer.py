@@ -19,7 +19,7 @@ from checker.engines.fast.compile_progress import compilation_uncounted
 from checker.engines.fast.learner import Learner
 from checker.engines.fast.row_graph import GraphSurvey
 from checker.engines.fast.row_inspection import inspect_fast
-from checker.engines.fast.space import Space
+from checker.engines.fast.search import Search
 from checker.engines.made_on_access import MadeOnAccess
 from checker.limits import Bound, BoundMet, CheckPart, Limits, Stop, bounded, is_full, memory_left
 from semantics.state.configuration import Configuration
@@ -75,14 +75,14 @@ class _Explorer:
         self.keeping = options.keeping
         self.learner = Learner(initial.setting, initial.state, limits.pending)  # type: ignore[arg-type]  # a stored one
         self.reduce = options.reduce
-        self.space = Space(
+        self.search = Search(
             self.learner,
             limits.configurations,
             self.choosing(),
             self.exchanging(),
             options.threads or cores(),
         )
-        self.space.left = self.left
+        self.search.store.left = self.left
         self.journey = Journey(0, 1, 0.0)
         self.layers = [1]
         self.bounds: list[Bound] = []
@@ -123,29 +123,29 @@ class _Explorer:
         self.exploring = EXPLORING if inspect or self.keeping.doubted else 1.0
         path = self.checkpoint
         if path is not None and self.keeping.resumed and path.exists():
-            self.journey = resume(self.space, self.digest, path)
+            self.journey = resume(self.search, self.digest, path)
             self.layers = list(self.journey.layers)
         began -= self.journey.seconds
         with bounded(self.limits if self.limits.spill is None else replace(self.limits, memory=None), began):
             self.visit(began)
         self.keep(time.monotonic() - began)
-        space, numbers = self.space, range(self.space.size)
-        survey = GraphSurvey(space)
+        search, numbers = self.search, range(self.search.size)
+        survey = GraphSurvey(search)
         with bounded(self.limits_of_looking(), began):
             self.look_at(survey, inspect)
-        rules = space.rules()
+        rules = search.rules()
         return Exploration(
-            MadeOnAccess(space.configuration, numbers),
-            MadeOnAccess(lambda number: space.rows.origins.origin(number, space.size), numbers),
+            MadeOnAccess(search.model.configuration, numbers),
+            MadeOnAccess(search.store.origin, numbers),
             self.journey.depth,
-            space.expanded,
+            search.expanded,
             sum(rules.values()),
             rules,
             sorted(self.bounds + self.met(), key=str),
             time.monotonic() - began,
             rule_runs=self.learner.runs,
             survey=survey,
-            allowed=int(space.met.used.sum()),
+            allowed=int(search.expander.met.used.sum()),
             reducer=self.reduce,
             start=self.initial if self.reduce is not None else None,
         )
@@ -165,7 +165,9 @@ class _Explorer:
             if self.keeping.doubted:
                 from checker.engines.fast.crosscheck import crosscheck  # noqa: PLC0415  # for --paranoid only
 
-                crosscheck(self.space, sample(self.space.expanded, self.keeping.doubted), self.reduce)
+                crosscheck(
+                    self.search.expander, sample(self.search.expanded, self.keeping.doubted), self.reduce
+                )
             inspect_fast(survey, inspect)
         except BoundMet as met:
             self.bounds.append(met.bound.met_in(CheckPart.LOOKING))
@@ -180,7 +182,7 @@ class _Explorer:
 
     def limits_of_looking(self) -> Limits:
         """Return the limits of inspection: without the memory limit if exploration met it or spilled to files."""
-        full = self.limits.bound(Stop.MEMORY) in self.bounds or self.space.spilled
+        full = self.limits.bound(Stop.MEMORY) in self.bounds or self.search.store.spilled
         return replace(self.limits, memory=None) if full else self.limits
 
     def keep(self, seconds: float) -> None:
@@ -190,7 +192,7 @@ class _Explorer:
             return
         journey = replace(self.journey, seconds=seconds, layers=tuple(self.layers))
         try:
-            save(self.space, journey, self.digest, path)
+            save(self.search, journey, self.digest, path)
         except OSError as error:
             unkept = Bound(Stop.NO_CHECKPOINT, (str(path), error.strerror))
             self.bounds += [] if unkept in self.bounds else [unkept]
@@ -198,16 +200,16 @@ class _Explorer:
 
     def met(self) -> list[Bound]:
         """Return the bounds that left configurations out."""
-        limits, space = self.limits, self.space
+        limits, search = self.limits, self.search
         met = {
-            Stop.CONFIGURATIONS: space.was_cut and limits.configurations is not None,
-            Stop.PENDING: space.is_crowded,
+            Stop.CONFIGURATIONS: search.store.was_cut and limits.configurations is not None,
+            Stop.PENDING: search.expander.is_crowded,
         }
         return [limits.bound(stop) for stop, is_met in met.items() if is_met]
 
     def visit_all(self, started: float) -> None:
         reported = kept = time.monotonic()
-        while self.space.expanded < self.space.size:
+        while self.search.expanded < self.search.size:
             self.advance()
             now = time.monotonic()
             if self.is_over(now - started):
@@ -221,11 +223,11 @@ class _Explorer:
 
     def advance(self) -> None:
         """Expand some rows of a layer; begin the next layer at its end."""
-        space, end = self.space, self.journey.layer_end
-        space.advance(min(space.expanded + CHUNK, end), end)
-        if space.expanded == end and space.size > end:
-            self.layers.append(space.size - end)
-            self.journey = Journey(self.journey.depth + 1, space.size, self.journey.seconds)
+        search, end = self.search, self.journey.layer_end
+        search.advance(min(search.expanded + CHUNK, end), end)
+        if search.expanded == end and search.size > end:
+            self.layers.append(search.size - end)
+            self.journey = Journey(self.journey.depth + 1, search.size, self.journey.seconds)
 
     def is_over(self, seconds: float) -> bool:
         """Return whether time, memory or the user ends the exploration, and record the bound."""
@@ -237,19 +239,19 @@ class _Explorer:
 
     def left(self) -> float:
         """Return the bytes of memory that are left; infinity as long as rows may still spill to files."""
-        may_spill = self.limits.spill is not None and not self.space.spilled
+        may_spill = self.limits.spill is not None and not self.search.store.spilled
         return math.inf if may_spill else memory_left(self.limits)
 
     def makes_room(self) -> bool:
         """Spill rows to files if that is enabled and not done yet; return whether memory is free again."""
-        if self.limits.spill is None or self.space.spilled:
+        if self.limits.spill is None or self.search.store.spilled:
             return False
-        self.space.spill(Path(self.limits.spill))
+        self.search.spill(Path(self.limits.spill))
         return not is_full(self.limits)
 
     def progress(self, seconds: float) -> Progress:
-        space = self.space
-        rate = space.expanded / max(seconds, 1e-9)
-        transitions = int(space.counts.used.sum())
-        frontier, guess = space.size - space.expanded, estimate(self.layers)
-        return Progress(space.size, transitions, self.journey.depth, frontier, rate, guess)
+        search = self.search
+        rate = search.expanded / max(seconds, 1e-9)
+        transitions = int(search.expander.counts.used.sum())
+        frontier, guess = search.size - search.expanded, estimate(self.layers)
+        return Progress(search.size, transitions, self.journey.depth, frontier, rate, guess)

@@ -32,6 +32,8 @@ class LearnedModel(NamedTuple):
         columns: The word, shift and mask of each column.
         agents_from, agents, clauses: Trees. Those of agents are in groups, one for each value of the cell that names
             the agents.
+        alpha: The column of the agents' names, -1 if they are constant.
+        takes_turns: Whether requests wait for their turn.
     """
 
     root: Ints
@@ -47,6 +49,8 @@ class LearnedModel(NamedTuple):
     agents_from: Ints
     agents: Ints
     clauses: Ints
+    alpha: int
+    takes_turns: int
 
 
 class SuccessorBatch(NamedTuple):
@@ -72,16 +76,16 @@ class SuccessorBatch(NamedTuple):
     lately: Ints
 
 
-STATE = 17
-AT, SIZE, LIMIT, WORDS, KEPT, TURNS, ALPHA, GATHERED, TREE, NODE, CODE, CUT, CROWDS, EXPANDED = range(14)
-SIFTED, PUT_OFF, SEEN = range(14, STATE)
+STATE = 15
+AT, SIZE, LIMIT, WORDS, KEPT, GATHERED, TREE, NODE, CODE, CUT, CROWDS, EXPANDED = range(12)
+SIFTED, PUT_OFF, SEEN = range(12, STATE)
 """The entries of the loops' state.
 
 AT: the next row. SIZE, LIMIT: the number of rows, and its limit. WORDS, KEPT: the words of a row, and of its stored
-form. TURNS: whether requests wait for their turn. ALPHA: the column of the agents, -1 if constant. GATHERED: the number
-of gathered successors. TREE, NODE, CODE: the place where a tree ended. CUT: whether the limit left rows out. CROWDS:
-the number of crowded rows. EXPANDED: the number of rows with all successors stored. SIFTED: the number of successors
-that may be new. PUT_OFF: the number of deferred rows. SEEN: the number of rows that may be looked up.
+form. GATHERED: the number of gathered successors. TREE, NODE, CODE: the place where a tree ended. CUT: whether the
+limit left rows out. CROWDS: the number of crowded rows. EXPANDED: the number of rows with all successors stored.
+SIFTED: the number of successors that may be new. PUT_OFF: the number of deferred rows. SEEN: the number of rows that
+may be looked up.
 """
 
 WIDE, UNSORTED, FULL = -2, -3, -4
@@ -175,13 +179,13 @@ def list_steps(
     """
     leaves, taken = batch.leaves, batch.steps
     first, last = np.int64(0), np.int64(len(m.agents))
-    if state[ALPHA] >= 0:
-        group = code_at(source, at, m.columns, state[ALPHA])
+    if m.alpha >= 0:
+        group = code_at(source, at, m.columns, m.alpha)
         first, last = np.int64(m.agents_from[group]), np.int64(m.agents_from[group + 1])
     flags = find_leaves(m, source, at, first, last, leaves, state)
     if flags < 0 or flags & HAS_CROWD:
         return np.int64(UNKNOWN if flags < 0 else CROWDED)
-    turn = first_turn(m.leaves, m.steps, leaves, last - first) if state[TURNS] else np.int64(-1)
+    turn = first_turn(m.leaves, m.steps, leaves, last - first) if m.takes_turns else np.int64(-1)
     end = np.int64(begin)
     for k in range(last - first + len(m.clauses)):
         for step in range(m.leaves[LEAF * leaves[k] + FIRST], m.leaves[LEAF * leaves[k] + END]):

@@ -1,6 +1,6 @@
-"""Slices of rows that several threads expand ahead of the thread that stores them.
+"""Chunks of rows that several threads expand ahead of the thread that stores them.
 
-One thread stores the slices in order, so rows get the same numbers as with a single thread. If no slice is ready, this
+One thread stores the chunks in order, so rows get the same numbers as with a single thread. If no chunk is ready, this
 thread expands one itself, so no thread idles while there is work.
 """
 
@@ -23,17 +23,17 @@ from checker.engines.fast.learned_model import (
 )
 
 EACH = 4
-"""The number of slices ahead for each thread: one in expansion, the others waiting."""
+"""The number of chunks ahead for each thread: one in expansion, the others waiting."""
 
 SHARE = 2
-"""The least number of slices for each thread into which the pending rows are divided."""
+"""The least number of chunks for each thread into which the pending rows are divided."""
 
 WORTH = 1 << 8
 """The least number of rows for which another thread pays off: handing over takes time."""
 
 
 @dataclass(slots=True, eq=False)
-class RowSlice:
+class RowChunk:
     """Rows that one thread expands.
 
     Attributes:
@@ -76,61 +76,61 @@ class RowSlice:
 
 
 class Pipeline:
-    """The slices ahead of the stored rows.
+    """The chunks ahead of the stored rows.
 
     Attributes:
         threads: The number of threads, including the one that stores.
-        expand: Expands a slice, in any thread.
-        sift: Drops the known successors of a slice; otherwise storing drops them.
-        ahead: The slices, in order.
-        awaited: The slice that the storing thread waits for, if any.
-        is_far_ahead: Whether more slices were ready at the last `take` than can be stored at once.
+        expand: Expands a chunk, in any thread.
+        sift: Drops the known successors of a chunk; otherwise storing drops them.
+        ahead: The chunks, in order.
+        awaited: The chunk that the storing thread waits for, if any.
+        is_far_ahead: Whether more chunks were ready at the last `take` than can be stored at once.
     """
 
     def __init__(
-        self, threads: int, expand: Callable[[RowSlice], None], sift: Callable[[RowSlice], None]
+        self, threads: int, expand: Callable[[RowChunk], None], sift: Callable[[RowChunk], None]
     ) -> None:
         self.threads = threads
         self.expand = expand
         self.sift = sift
-        self.awaited: RowSlice | None = None
+        self.awaited: RowChunk | None = None
         self.is_far_ahead = False
-        self.ahead: deque[RowSlice] = deque()
+        self.ahead: deque[RowChunk] = deque()
         self.beside = ThreadPoolExecutor(threads - 1, "expanding") if threads > 1 else None
 
     @property
     def begin(self) -> int | None:
-        """The first row of the first slice ahead; None if there is none."""
+        """The first row of the first chunk ahead; None if there is none."""
         return self.ahead[0].begin if self.ahead else None
 
     @property
     def end(self) -> int | None:
-        """The end of the last slice ahead; None if there is none."""
+        """The end of the last chunk ahead; None if there is none."""
         return self.ahead[-1].end if self.ahead else None
 
     @property
     def is_full(self) -> bool:
-        """Whether enough slices are ahead."""
+        """Whether enough chunks are ahead."""
         return len(self.ahead) >= (1 if self.beside is None else EACH * self.threads)
 
     def fair(self, rows: int) -> int:
-        """Return the greatest size of a slice such that all threads get some of `rows` rows."""
+        """Return the greatest size of a chunk such that all threads get some of `rows` rows."""
         return rows if self.beside is None else max(rows // (SHARE * self.threads), WORTH)
 
-    def add(self, part: RowSlice) -> None:
-        """Add a slice behind the others; another thread expands it, or this one at its turn."""
+    def add(self, part: RowChunk) -> None:
+        """Add a chunk behind the others; another thread expands it, or this one at its turn."""
         self.ahead.append(part)
         if self.beside is not None and part.end - part.begin >= WORTH:
             part.expanding = self.beside.submit(self._expand_beside, part)
 
-    def _expand_beside(self, part: RowSlice) -> None:
-        """Expand a slice in another thread, and sift it if storing lags behind."""
+    def _expand_beside(self, part: RowChunk) -> None:
+        """Expand a chunk in another thread, and sift it if storing lags behind."""
         self.expand(part)
         if self.is_far_ahead and part is not self.awaited:
             self.sift(part)
 
-    def take(self) -> RowSlice:
-        """Return the first slice once it is expanded; meanwhile expand slices that no thread has begun."""
+    def take(self) -> RowChunk:
+        """Return the first chunk once it is expanded; meanwhile expand chunks that no thread has begun."""
         self.awaited = first = self.ahead.popleft()
         ready = sum(each.expanding is not None and each.expanding.done() for each in self.ahead)
         # Decided here, since only this thread may iterate over `ahead`.
@@ -148,7 +148,7 @@ class Pipeline:
         return first
 
     def rest(self) -> None:
-        """Stop the other threads: cancel slices not begun, and await those in expansion; their results stay valid."""
+        """Stop the other threads: cancel chunks not begun, and await those in expansion; their results stay valid."""
         for part in self.ahead:
             if part.expanding is not None and part.expanding.cancel():
                 part.expanding = None
@@ -157,7 +157,7 @@ class Pipeline:
                 part.expanding.result()
 
     def drop(self) -> None:
-        """Discard the slices ahead."""
+        """Discard the chunks ahead."""
         self.rest()
         self.ahead.clear()
 

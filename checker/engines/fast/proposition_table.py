@@ -89,7 +89,7 @@ class Profiles:
             self.atoms.setdefault(subject(atom), []).append(atom)
         self.ranks = {atom: rank for each in self.atoms.values() for rank, atom in enumerate(each)}
         self.anchors: dict[Inside, list[int]] = {}
-        learner = survey.space.learner
+        learner = survey.learner
         self.trees = {
             one: learner.question(partial(profile, tuple(atoms))) for one, atoms in self.atoms.items()
         }

@@ -5,8 +5,10 @@ from functools import partial
 
 import numpy as np
 
+from checker.engines.fast.learner import Learner
 from checker.engines.fast.row_inspection import is_still, truths
 from checker.engines.fast.row_survey import RowSurvey
+from checker.engines.fast.search import Search
 from checker.engines.graph import Graph
 from semantics.properties.propositions import Proposition
 from semantics.state.configuration import Configuration, Label
@@ -17,13 +19,17 @@ from semantics.state.signature import Name
 class GraphSurvey(RowSurvey):
     """A survey that also builds the graph."""
 
+    def __init__(self, search: Search) -> None:
+        super().__init__(search.model, search.expander.met.used.copy())
+        self.search = search
+
     def graph(self) -> Graph:
         """Return every transition of the expanded configurations."""
-        return graph_of_space(self)
+        return graph_of_search(self.search)
 
     def valuation(self, asked: Iterable[Proposition]) -> dict[Proposition, np.ndarray]:
         """Return the configurations in which each proposition is true."""
-        return {each: truths(self, each, self.space.size) for each in dict.fromkeys(asked)}
+        return {each: truths(self, each, self.search.size) for each in dict.fromkeys(asked)}
 
     def is_still(self, asked: Iterable[Proposition]) -> bool:
         """Return whether everything that the atoms read is constant."""
@@ -31,38 +37,44 @@ class GraphSurvey(RowSurvey):
 
     def pending(self) -> dict[Request, np.ndarray]:
         """Return, for each request, the configurations in which it is pending, in ascending order."""
-        return pending_in_space(self)
+        return pending_in_rows(self)
 
 
-def graph_of_space(survey: RowSurvey) -> Graph:
+def graph_of_search(search: Search) -> Graph:
     """Return every followed transition of the expanded configurations, in the order of the rules.
 
     The label of a `rcv_obs` omits the received observation, which only a decoded configuration has.
     """
-    space, size = survey.space, survey.space.size
+    size, expanded, learner = search.size, search.expanded, search.model.learner
     found = [(np.zeros(0, np.int64), np.zeros(0, np.int32), np.zeros(0, np.int64))]
-    if space.choosing is not None and space.choosing.paths.has_transitions:
-        found.append(space.choosing.paths.transitions(survey.size))
+    if search.choosing is not None and search.choosing.paths.has_transitions:
+        found.append(search.choosing.paths.transitions(expanded))
     else:
-        found += space.edges(range(survey.size))
+        found += search.expander.edges(range(expanded))
     origins, steps, targets = (np.concatenate(each) for each in zip(*found, strict=True))
-    numbers: dict[Label, int] = {}
-    action_of = np.zeros(len(space.learner.leaves.rule), np.int32)
-    for step, label in space.learner.steps.items():
-        action_of[step] = numbers.setdefault(label, len(numbers))
+    action_of, labels = actions_of(learner)
     there = targets >= 0
-    partial_rows = np.arange(size) >= survey.size
+    partial_rows = np.arange(size) >= expanded
     partial_rows[origins[~there]] = True
-    if space.is_crowded:
+    if search.expander.is_crowded:
         partial_rows |= _without_steps(origins, size)
     starts = np.concatenate(([0], np.cumsum(np.bincount(origins[there], minlength=size))))
     return Graph(
         starts.astype(np.int64),
         targets[there].astype(np.int32),
         action_of[steps[there]],
-        tuple(numbers),
+        labels,
         partial_rows if partial_rows.any() else None,
     )
+
+
+def actions_of(learner: Learner) -> tuple[np.ndarray, tuple[Label, ...]]:
+    """Return the number of each transition's label, and the labels."""
+    numbers: dict[Label, int] = {}
+    found = np.zeros(len(learner.leaves.rule), np.int32)
+    for step, label in learner.steps.items():
+        found[step] = numbers.setdefault(label, len(numbers))
+    return found, tuple(numbers)
 
 
 def _without_steps(origins: np.ndarray, size: int) -> np.ndarray:
@@ -70,16 +82,15 @@ def _without_steps(origins: np.ndarray, size: int) -> np.ndarray:
     return np.asarray(np.bincount(origins, minlength=size) == 0)
 
 
-def pending_in_space(survey: RowSurvey) -> dict[Request, np.ndarray]:
+def pending_in_rows(survey: RowSurvey) -> dict[Request, np.ndarray]:
     """Return, for each request, the configurations in which it is pending, in ascending order."""
-    space = survey.space
     found: dict[Request, list[np.ndarray]] = {}
     for a in survey.agents():
-        tree = space.learner.question(partial(_requests, a))
-        for rows in survey.blocks(space.size):
-            leaves = space.classify(tree, rows)
+        tree = survey.learner.question(partial(_requests, a))
+        for rows in survey.blocks(survey.model.store.size):
+            leaves = survey.classify(tree, rows)
             for leaf in np.unique(leaves):
-                for request in space.learner.answers[int(leaf)]:  # type: ignore[attr-defined]  # a tuple
+                for request in survey.learner.answers[int(leaf)]:  # type: ignore[attr-defined]  # a tuple
                     found.setdefault(request, []).append(rows[leaves == leaf])
     return {request: np.unique(np.concatenate(rows)) for request, rows in found.items()}
 

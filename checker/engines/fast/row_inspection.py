@@ -48,7 +48,7 @@ ALL = 1 << 62
 
 def inspect_fast(survey: RowSurvey, inspections: Iterable[Inspect]) -> None:
     """Give each inspection the findings that it would have after visiting every expanded configuration."""
-    setting = survey.space.learner.setting
+    setting = survey.learner.setting
     takes_turns = setting.scheduler is Scheduler.FCFS
     for each in inspections if survey.size else ():
         match each:
@@ -144,7 +144,7 @@ def together(
     the one inspected.
     """
     agents = survey.agents() if inspection.together else ()
-    trees = [survey.space.learner.question(partial(_still, inspection, a, view)) for a in agents]
+    trees = [survey.learner.question(partial(_still, inspection, a, view)) for a in agents]
     numbers: dict[Hashable, int] = {None: 0}
     for block in survey.blocks() if agents else ():
         rows, answers, kinds = block, np.zeros((0, len(block)), np.int64), np.zeros(len(block), np.int64)
@@ -179,13 +179,12 @@ def excerpt(c: Configuration, rules: Iterable[Rules], agents: Iterable[Name]) ->
 
 def look_at_races(survey: RowSurvey, inspection: ControlRaces) -> None:
     """Collect control races; a pair of agents with independent steps has none and is not examined."""
-    space = survey.space
     tallies: list[Tally] = []
     agents = survey.agents()
     trees = {a: survey.of_actor(TransitionGroup(served, a)) for a in agents}
-    unordered = space.learner.setting.scheduler is Scheduler.UNORDERED
+    unordered = survey.learner.setting.scheduler is Scheduler.UNORDERED
     pairs = [(a, b) for a, b in combinations_with_replacement(agents, 2) if a != b or unordered]
-    asked = {pair: space.learner.question(partial(_between, inspection, pair)) for pair in pairs}
+    asked = {pair: survey.learner.question(partial(_between, inspection, pair)) for pair in pairs}
     controlling = cache(partial(has_control, survey))
     independent = cache(partial(are_independent, survey))
 
@@ -232,13 +231,13 @@ def of_rows(survey: RowSurvey, tree: int, rows: NDArray[np.int64]) -> Iterator[T
     if len(rows):
         leaves = survey.classify(tree, rows)
         for leaf, first, count in distinct(leaves):
-            for key in survey.space.learner.answers[leaf]:  # type: ignore[attr-defined]  # a tuple of keys
+            for key in survey.learner.answers[leaf]:  # type: ignore[attr-defined]  # a tuple of keys
                 yield key, count, int(rows[first])
 
 
 def has_control(survey: RowSurvey, leaf: int) -> bool:
     """Return whether a leaf has a transition that serves a control."""
-    learner = survey.space.learner
+    learner = survey.learner
     return any(learner.steps[step].rule in CONTROLS for step in learner.leaves.steps_of(leaf))
 
 
@@ -252,8 +251,8 @@ def are_independent(survey: RowSurvey, one: int, other: int) -> bool:
 
 def leaves_alone(survey: RowSurvey, writes: dict[int, list[int]], leaf: int) -> bool:
     """Return whether writes change no answer on the path to a leaf."""
-    columns = survey.space.learner.columns.all
-    for column, ask, said in survey.space.learner.reads[leaf]:
+    columns = survey.learner.columns.all
+    for column, ask, said in survey.learner.reads[leaf]:
         for code in writes.get(column, ()):
             if ask.question is None or ask.question(columns[column].value(code), *ask.constants) != said:
                 return False
@@ -262,7 +261,7 @@ def leaves_alone(survey: RowSurvey, writes: dict[int, list[int]], leaf: int) -> 
 
 def written(survey: RowSurvey, leaf: int) -> dict[int, list[int]] | None:
     """Return the columns that a leaf's transitions write, with the codes; None if copies or parts write others."""
-    leaves = survey.space.learner.leaves
+    leaves = survey.learner.leaves
     found: dict[int, list[int]] = {}
     for step in leaves.steps_of(leaf):
         record = leaves.steps.room[STEP * step : STEP * (step + 1)]
@@ -334,8 +333,7 @@ def look_at_visited(survey: RowSurvey, inspection: Visited) -> None:
                 code, passed = answer.value
                 inspection.codes.setdefault(a, set()).add(code)
                 inspection.passed |= passed
-    space = survey.space
-    for step in np.flatnonzero(space.met.used):
-        label = space.learner.steps.get(int(step))
+    for step in np.flatnonzero(survey.taken):
+        label = survey.learner.steps.get(int(step))
         if label is not None and label.agent is None:
             inspection.happened.add(str(label.about))

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from checker.engines.fast.learner import TransitionGroup
-from checker.engines.fast.space import Space
+from checker.engines.fast.model import Model
 from semantics.state.cell_values import AGENTS
 from semantics.state.configuration import Configuration
 from semantics.state.signature import Name
@@ -34,15 +34,23 @@ class SurveyAnswer:
 
 
 class RowSurvey:
-    """Evaluates questions on the expanded configurations."""
+    """Evaluates questions on the expanded configurations.
 
-    def __init__(self, space: Space) -> None:
-        self.space = space
-        self.size = space.expanded
+    Attributes:
+        model: The configurations, and what is known of their rules.
+        taken: How often each transition is enabled in them.
+        size: The number of configurations.
+    """
+
+    def __init__(self, model: Model, taken: NDArray[np.int64]) -> None:
+        self.model = model
+        self.learner = model.learner
+        self.taken = taken
+        self.size = model.store.expanded
 
     def agents(self) -> tuple[Name, ...]:
         """Return every agent of some configuration, sorted."""
-        learner = self.space.learner
+        learner = self.learner
         groups = [learner.still.read(AGENTS)]
         if AGENTS in learner.varying:
             column = learner.columns.all[learner.columns.numbers[(AGENTS,)]]
@@ -51,11 +59,11 @@ class RowSurvey:
 
     def configuration(self, number: int) -> Configuration:
         """Return a configuration."""
-        return self.space.configuration(number)
+        return self.model.configuration(number)
 
     def classify(self, tree: int, rows: NDArray[np.int64]) -> NDArray[np.int32]:
         """Return the leaf of each row in a tree."""
-        return self.space.classify(tree, rows)
+        return self.model.classify(tree, rows)
 
     def shown(self, number: int) -> Iterator[tuple[Configuration, Expansion]]:
         """Yield a configuration with its expansion, as input for an inspection."""
@@ -65,10 +73,10 @@ class RowSurvey:
     def answers(self, question: Callable[[Configuration], Hashable]) -> list[SurveyAnswer]:
         """Return each distinct answer once, in the order of first occurrence."""
         found: dict[Hashable, SurveyAnswer] = {}
-        tree = self.space.learner.question(question)
+        tree = self.learner.question(question)
         for rows, leaves in self.leaves(tree):
             for leaf, first, count in distinct(leaves):
-                value = self.space.learner.answers[leaf]
+                value = self.learner.answers[leaf]
                 before = found.get(value)
                 start = int(rows[first]) if before is None else min(before.first, int(rows[first]))
                 found[value] = SurveyAnswer(value, count + (0 if before is None else before.count), start)
@@ -92,7 +100,7 @@ class RowSurvey:
         self, question: Callable[[Configuration], bool], size: int | None = None
     ) -> tuple[NDArray[np.bool_], bool]:
         """Return where the answer is yes, and whether some value that it read differs between rows."""
-        tree = self.space.learner.question(question)
+        tree = self.learner.question(question)
         found = [np.zeros(0, np.bool_)]
         met: set[int] = set()
         numbers: dict[Hashable, int] = {False: 0, True: 1}
@@ -106,12 +114,12 @@ class RowSurvey:
         """Return the number of each leaf's answer; new answers get the next numbers."""
         there = distinct_leaves(leaves)
         found = np.zeros(there[-1] + 1 if there else 0, np.int64)
-        found[there] = [numbers.setdefault(self.space.learner.answers[leaf], len(numbers)) for leaf in there]
+        found[there] = [numbers.setdefault(self.learner.answers[leaf], len(numbers)) for leaf in there]
         return found[leaves]
 
     def of_actor(self, actor: TransitionGroup) -> int:
         """Return the tree of an actor."""
-        return self.space.learner.tree(actor)
+        return self.learner.tree(actor)
 
 
 def distinct_leaves(leaves: NDArray[np.int32]) -> list[int]:

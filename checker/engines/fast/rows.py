@@ -1,4 +1,4 @@
-"""The rows of a space with their origins, growing together; wide rows are tree-compressed."""
+"""The rows of a store with their origins, growing together; wide rows are tree-compressed."""
 
 from collections.abc import Iterator
 from pathlib import Path

@@ -12,6 +12,7 @@ import numpy as np
 
 from checker.engines.contract import Exploration, Inspect, Options, Progress, TickError, sample
 from checker.engines.fast.compile_progress import compilation_uncounted
+from checker.engines.fast.expander import Expander
 from checker.engines.made_on_access import MadeOnAccess
 from checker.engines.timed.zone_answers import ZoneTimes
 from checker.engines.zones.timed_automaton import ConstantTooLargeError
@@ -123,9 +124,11 @@ def _doubt(network: Network, count: int) -> None:
     if count:
         from checker.engines.fast.crosscheck import crosscheck  # noqa: PLC0415  # for --paranoid only
 
+        expander = Expander(network.model)
+        network.model.see()
         automaton = network.automaton
         rows = np.unique(automaton.rows.used[automaton.left()])
-        crosscheck(network, rows[sample(len(rows), count)].tolist())
+        crosscheck(expander, rows[sample(len(rows), count)].tolist())
 
 
 def _visit_all(

@@ -25,12 +25,10 @@ from checker.engines.fast.decision_leaves import (
 from checker.engines.fast.jit_decorators import inner, njit
 from checker.engines.fast.kernel import add_row
 from checker.engines.fast.learned_model import (
-    ALPHA,
     AT,
     KEPT,
     SIZE,
     TREE,
-    TURNS,
     WORDS,
     LearnedModel,
     code_at,
@@ -146,8 +144,8 @@ def find_steps(
     """Find the steps and clocks of a row whose words begin at `at`; False if a tree lacks an answer."""
     state[AT] = row
     first, last = np.int64(0), np.int64(len(m.agents))
-    if state[ALPHA] >= 0:
-        group = code_at(words, at, m.columns, state[ALPHA])
+    if m.alpha >= 0:
+        group = code_at(words, at, m.columns, m.alpha)
         first, last = np.int64(m.agents_from[group]), np.int64(m.agents_from[group + 1])
     agents, vehicles = last - first, len(t.vehicles)
     actors = agents + len(m.clauses)
@@ -173,7 +171,7 @@ def find_steps(
             return False
         v.answers[k] = -reference - 1
     v.counts[AGENTS], v.counts[ACTORS] = agents, actors
-    v.counts[ITS_TURN] = first_turn(m.leaves, m.steps, v.leaves, agents) if state[TURNS] else -1
+    v.counts[ITS_TURN] = first_turn(m.leaves, m.steps, v.leaves, agents) if m.takes_turns else -1
     v.counts[IS_CROWDED] = flags & CROWDED
     v.counts[STAMP] += 1
     note_clocks(m, t, v)

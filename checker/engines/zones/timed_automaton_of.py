@@ -20,8 +20,9 @@ from checker.engines.fast.arrays import Growing
 from checker.engines.fast.decision_leaves import LEAF
 from checker.engines.fast.learned_model import AT, LIMIT
 from checker.engines.fast.learner import Learner
+from checker.engines.fast.model import Model
 from checker.engines.fast.origins import OriginPages
-from checker.engines.fast.space import Space
+from checker.engines.fast.store import RowFormat, Store
 from checker.engines.fast.table import most_in
 from checker.engines.fast.value_templates import settled
 from checker.engines.zones import location_successors
@@ -79,18 +80,18 @@ class MissionLocation(NamedTuple):
     windows: tuple[int, ...] = ()
 
 
-class Network(Space):
+class Network:
     """The knowledge about a mission's configurations, and the automaton that they form.
 
     Attributes:
+        store: The configurations, as rows.
+        learner, model: The rules, and their tables for the loops.
         automaton: The automaton; the edges of some locations may be unknown.
         clocks_of: The measured subject of each of its clocks.
         caps: The value of each clock beyond which no test distinguishes values.
         outgrown: Whether the constant of a clock has grown.
         first_ages: The clock values of the first location.
     """
-
-    ORIGINS = OriginPages  # origins are read in the order of the timed search
 
     def __init__(self, initial: Configuration, pending: int) -> None:
         self.initial = initial
@@ -115,9 +116,22 @@ class Network(Space):
         self.restored = [self._restoring(vehicle) for vehicle, _ in self.timing.endurances]
         self.questions: dict[tuple[object, Name | int], int] = {}
         self.timed: LearnedClocks
-        super().__init__(Learner(initial.setting, initial.state, pending), None)  # type: ignore[arg-type]  # a stored one
+        self.learner = Learner(initial.setting, initial.state, pending)  # type: ignore[arg-type]  # a stored one
+        self.store = Store(form=RowFormat(OriginPages))  # rows are reached in the order of the timed search
+        self.model = Model(self.learner, self.store)
+        self.model.followers.append(self._see)
+        self.model.see()
         self.situation = lru_cache(1 << 12)(lambda number: TimedView(self.configuration(number)))
         self.first_ages: tuple[int, ...] = ()
+
+    @property
+    def size(self) -> int:
+        """The number of configurations."""
+        return self.store.size
+
+    def configuration(self, number: int) -> Configuration:
+        """Return a configuration."""
+        return self.model.configuration(number)
 
     def begin(self) -> None:
         """Add the first location."""
@@ -128,8 +142,8 @@ class Network(Space):
         loop: Callable[..., int] = location_successors.begin
 
         def work(model: object, timed: LearnedClocks, growth: AutomatonGrowth, view: LocationView) -> int:
-            rows = self.rows
-            return loop(model, timed, growth, view, rows.words, rows.folded, code, self.state, self.counts_of)
+            rows, state = self.store.rows, self.store.state
+            return loop(model, timed, growth, view, rows.words, rows.folded, code, state, self.counts_of)
 
         self._run(work)
         self.first_ages = self.measured(situation, ages)
@@ -154,16 +168,15 @@ class Network(Space):
     # --- learned clocks -------------------------------------------------------------------------------------------
 
     def _see(self) -> None:
-        """Update the loops' view of the learned rules."""
-        super()._see()
-        known = len(self.questions)
+        """Update the loops' view of the learned clocks."""
         vehicles = [self._question(of_vehicle, vehicle) for vehicle, _ in self.timing.endurances]
         agents = [
-            self._question(of, a) for group in self.groups for of in (of_requests, of_moves) for a in group
+            self._question(of, a)
+            for group in self.model.groups
+            for of in (of_requests, of_moves)
+            for a in group
         ]
-        clauses = [self._question(of_clause, number) for number in range(len(self.clauses))]
-        if len(self.questions) > known:
-            super()._see()  # the trees of new questions
+        clauses = [self._question(of_clause, number) for number in range(len(self.model.clauses))]
         self._note_answers()
         windows = [
             each
@@ -260,15 +273,15 @@ class Network(Space):
         choices = np.zeros(CHOICE * (len(self.restored) + len(self.windows) + 1), np.int32)
 
         def work(model: object, timed: LearnedClocks, growth: AutomatonGrowth, view: LocationView) -> int:
-            rows, folded = self.rows, self.rows.folded
-            other, arrays = self._view(), (rows.words, folded, rows.origins.loops, self.table.room)
-            most = min(rows.room, most_in(len(self.table.room)), int(self.state[LIMIT]))
-            target = np.zeros(self.packing.words, np.uint64)
+            store, rows, folded = self.store, self.store.rows, self.store.rows.folded
+            other, arrays = self._view(), (rows.words, folded, rows.origins.loops, store.table.room)
+            most = min(rows.room, most_in(len(store.table.room)), int(store.state[LIMIT]))
+            target = np.zeros(store.packing.words, np.uint64)
             kept = target if folded is None else np.zeros(rows.kept, np.uint64)
             scratch = target, kept, np.zeros(2 * self.margin, np.int32), choices
             loop: Callable[..., int] = location_successors.leave
             known = (model, timed, growth, view, other)
-            return loop(*known, *arrays, most, *scratch, locations, self.state, self.counts_of)
+            return loop(*known, *arrays, most, *scratch, locations, store.state, self.counts_of)
 
         self._run(work)
 
@@ -278,27 +291,28 @@ class Network(Space):
         """Run a loop to its end, with more room and more learned rules where it stops."""
         while True:
             look()  # each location is recorded whole
-            self._compress()
+            if self.store.compress():
+                self.model.see()
             self._reserve()
             done = self.counts_of.copy()
-            why = loop(self.model, self.timed, self._growth(), self._view())
+            why = loop(self.model.loops, self.timed, self._growth(), self._view())
             self._measure()
             if why == location_successors.KNOWN:
                 return
             if why == location_successors.MISS:
-                self._learn(int(self.state[AT]))
+                self.model.learn(int(self.store.state[AT]))
             elif np.array_equal(done, self.counts_of):
                 self.margin *= 2
 
     def spill(self, folder: Path) -> None:
-        """Move rows, origins and locations to files in a folder; raises OSError as `Space.spill`."""
-        super().spill(folder)
+        """Move rows, origins and locations to files in a folder; raises OSError as `Store.spill`."""
+        self.store.spill(folder)
         self.automaton.spill(folder)
         for each in (self.of_rows, self.before, self.said):
             each.spill(folder)
 
     def _reserve(self) -> None:
-        self._make_room(self.margin)
+        self.store.make_room(self.margin)
         missing = self.size + self.margin - len(self.of_rows)
         if missing > 0:
             self.of_rows.extend(missing, NONE)
@@ -331,7 +345,8 @@ class Network(Space):
 
     def _view(self) -> LocationView:
         clocks = len(self.clocks_of)
-        actors = np.zeros(self.actors, np.int32), np.zeros(self.actors + len(self.restored), np.int32)
+        most = self.model.actors
+        actors = np.zeros(most, np.int32), np.zeros(most + len(self.restored), np.int32)
         numbers = np.zeros(location_successors.CLOCKS + 1, np.int64)
         return LocationView(
             *actors,

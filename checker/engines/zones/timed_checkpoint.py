@@ -27,11 +27,11 @@ def save(network: Network, seconds: float, digest: str, path: Path) -> None:
         "schema": SCHEMA,
         "digest": digest,
         "size": network.size,
-        "words": network.packing.words,
+        "words": network.store.packing.words,
         "seconds": seconds,
-        "columns": digest_of_columns(network),
+        "columns": digest_of_columns(network.model),
     }
-    write_archive(path, head, KINDS, (*kept_rows(network), network.automaton.left()))
+    write_archive(path, head, KINDS, (*kept_rows(network.model), network.automaton.left()))
 
 
 def resume(network: Network, digest: str, path: Path) -> float:
@@ -47,14 +47,14 @@ def resume(network: Network, digest: str, path: Path) -> float:
         seconds, size = head["seconds"], head["size"]
         if not is_time(seconds) or type(size) is not int or size < 1:
             raise ValueError("its numbers are wrong")
-        restore_rows(network, head["words"], size, arrays)
+        restore_rows(network.model, head["words"], size, arrays)
         network.begin()
         network.leave_again(arrays["left"])
         if network.size != size:
             raise ValueError("it lacks successors of its rows")
     except (ValueError, IndexError, KeyError, TypeError) as error:
         raise CheckpointError(f"{path}: this checkpoint is damaged: {error}") from error
-    if digest_of_columns(network) != head["columns"]:
+    if digest_of_columns(network.model) != head["columns"]:
         raise CheckpointError(
             f"{path}: the rules learned from this checkpoint differ from those recorded in it"
         )

@@ -34,7 +34,7 @@ class TimedSurvey(RowSurvey):
         in_time: InTime,
         places: NDArray[np.int64] | None = None,
     ) -> None:
-        super().__init__(network)
+        super().__init__(network.model, np.zeros(0, np.int64))
         self.network = network
         self.times = times
         self.order = order
@@ -48,11 +48,11 @@ class TimedSurvey(RowSurvey):
 
     def configuration(self, number: int) -> Configuration:
         """Return a configuration."""
-        return self.space.configuration(int(self.order[number]))
+        return self.model.configuration(int(self.order[number]))
 
     def classify(self, tree: int, rows: NDArray[np.int64]) -> NDArray[np.int32]:
         """Return each configuration's leaf in a tree."""
-        return self.space.classify(tree, self.order[rows])
+        return self.model.classify(tree, self.order[rows])
 
     def shown(self, number: int) -> Iterator[tuple[Configuration, Expansion]]:
         """Yield the views of a configuration for an inspection."""
@@ -66,6 +66,6 @@ class TimedSurvey(RowSurvey):
 
     def answered(self, question: Callable[[Configuration], Hashable]) -> tuple[NDArray[np.int64], list[Any]]:
         """Return the number of each configuration's answer, and all answers."""
-        tree, numbers = self.space.learner.question(question), dict[Hashable, int]()
+        tree, numbers = self.learner.question(question), dict[Hashable, int]()
         found = [self.numbered(self.classify(tree, rows), numbers) for rows in self.blocks()]
         return np.concatenate([np.zeros(0, np.int64), *found]), list(numbers)

@@ -73,8 +73,8 @@ def _look_at_deadlocks(times: ZoneTimes, inspection: DeadlockFreedom) -> None:
 
 def _look_at_races(times: ZoneTimes, inspection: ControlRaces) -> None:
     """Collect races of controls that may be served at the same moment."""
-    survey, space = times.survey(InTime.TOGETHER), times.network
-    unordered = space.learner.setting.scheduler is Scheduler.UNORDERED
+    survey = times.survey(InTime.TOGETHER)
+    unordered = survey.learner.setting.scheduler is Scheduler.UNORDERED
     independent = cache(partial(are_independent, survey))
     agents = survey.agents()
     trees = {a: survey.of_actor(TransitionGroup(served, a)) for a in agents}
@@ -90,7 +90,7 @@ def _look_at_races(times: ZoneTimes, inspection: ControlRaces) -> None:
                 places = np.unique(times.places[first & second])
                 if not len(places):
                     continue
-                asked = space.learner.question(partial(between, inspection, (a, one), (b, other)))
+                asked = survey.learner.question(partial(between, inspection, (a, one), (b, other)))
                 leaves = survey.classify(trees[a], places), survey.classify(trees[b], places)
                 tallies += of_pairs(
                     survey, asked, places, leaves, lambda *both: not unordered and independent(*both)

@@ -30,7 +30,7 @@ def explored(one):
 def test_a_worker_alone_has_all_rows_in_the_order_of_the_fast_explorer(name):
     alone = explore(start(name), engine=Engine.FAST)
     one = explored(shard(name))
-    assert [one.configuration(number) for number in range(one.size)] == list(alone.configurations)
+    assert [one.model.configuration(number) for number in range(one.size)] == list(alone.configurations)
     assert one.rules() == alone.rules
 
 
@@ -38,24 +38,24 @@ def test_whose_a_row_is_depends_on_what_it_says_alone():
     one = explored(shard())
     owners = {}
     for number in range(one.size):
-        keys = Keys(one.learner.columns)
+        keys = Keys(one.model.learner.columns)
         keys.refresh()
-        codes = one.codes(number)
+        codes = one.store.codes(number)
         xor = np.bitwise_xor.reduce([keys.keys[keys.begins[n] + code] for n, code in enumerate(codes)])
-        owners[one.row(number)] = int(xor) >> 32 >> 31  # of two workers
+        owners[one.model.row(number)] = int(xor) >> 32 >> 31  # of two workers
     assert set(owners.values()) == {0, 1}
     for me in range(2):
         first, other = shard(me=me, workers=2), shard(me=me, workers=2)
-        assert first.size == other.size == (owners[first.learner.still] == me)
+        assert first.size == other.size == (owners[first.model.learner.still] == me)
 
 
 def test_what_was_learned_is_learned_again_from_the_start_so_that_checkpoints_say_where():
     one = explored(shard())
-    learned, rows = one.learned, one.size
+    learned, rows = one.model.learned, one.size
     one.start()
-    assert one.learned == []
+    assert one.model.learned == []
     explored(one)
     assert one.size == rows
-    again, before = ({row for row, *_ in each} for each in (one.learned, learned))
+    again, before = ({row for row, *_ in each} for each in (one.model.learned, learned))
     assert again
     assert again <= before  # of values that it knows it need not ask

@@ -76,7 +76,7 @@ def test_without_memory_the_search_is_incomplete(engine):
 @pytest.mark.parametrize("name", ["takeover", "nomad", "handover"])
 def test_the_interpreter_agrees_with_what_was_learned(name):
     found = explored(start(name), limits=Limits(configurations=300))
-    crosscheck(found.survey.space, sample(found.expanded, 60))
+    crosscheck(found.survey.search.expander, sample(found.expanded, 60))
 
 
 @pytest.mark.parametrize("name", ["takeover", "oil_spill_timed"])
@@ -86,12 +86,12 @@ def test_configurations_with_too_much_pending_have_no_successors_to_check(name):
 
 
 def test_the_cross_check_finds_what_was_learned_wrong():
-    space = explored(start("oil_spill")).survey.space
-    wrong = int(np.flatnonzero(space.counts.used)[-1])  # some that was taken
-    width = space.packing.words
-    space.masks.room[2 * width * wrong + width] ^= ~np.uint64(0)  # it sets what it should not
+    search = explored(start("oil_spill")).survey.search
+    wrong = int(np.flatnonzero(search.expander.counts.used)[-1])  # some that was taken
+    width = search.store.packing.words
+    search.model.loops.masks[2 * width * wrong + width] ^= ~np.uint64(0)  # it sets what it should not
     with pytest.raises(Disagreement):
-        crosscheck(space, range(space.size))
+        crosscheck(search.expander, range(search.size))
 
 
 @pytest.mark.parametrize("is_right", [True, False])
@@ -100,7 +100,8 @@ def test_timed_missions_are_checked_again(monkeypatch, is_right):
 
     def spoil_and_doubt(network, count):
         if not is_right:
-            masks = network.masks.used.reshape(-1, 2, network.packing.words)
+            width, transitions = network.store.packing.words, len(network.learner.leaves.rule)
+            masks = network.model.loops.masks[: 2 * width * transitions].reshape(-1, 2, width)
             masks[:, 0], masks[:, 1] = ~np.uint64(0), 0  # nothing is written
         doubt(network, count)
 

@@ -80,13 +80,13 @@ def test_what_is_resumed_has_room_for_rows_that_are_wider_than_at_first(tmp_path
     assert list(map(str, cut.bounds)) == ["an interruption"]
     assert at <= len(cut.configurations) < MOST
     resumed = explore(hops(), engine=Engine.FAST, keeping=Keeping(str(tmp_path), True, "hops"))
-    space = resumed.survey.space
+    store = resumed.survey.search.store
     assert (len(resumed.configurations), resumed.transitions) == (MOST, 776_753)
-    assert space.rows.width == space.packing.words == 2
-    assert space.rows.room >= MOST
-    assert len(space.rows.words) >= 2 * space.rows.room
+    assert store.rows.width == store.packing.words == 2
+    assert store.rows.room >= MOST
+    assert len(store.rows.words) >= 2 * store.rows.room
     origins = np.array(resumed.origins)
-    assert np.all(origins[1:] < np.arange(1, space.size))
+    assert np.all(origins[1:] < np.arange(1, store.size))
 
 
 def test_a_batch_has_room_for_what_every_agent_does():
@@ -94,4 +94,4 @@ def test_a_batch_has_room_for_what_every_agent_does():
     agents = (f"BigActor a{k} hosted_at p0 with_behavior {{ let x = {k} }}\n" for k in range(257))
     found = explore(load("".join(agents), world).initial, engine=Engine.FAST, limits=Limits(configurations=2))
     assert len(found.configurations) == 2
-    assert len(found.survey.space.batch.leaves) == 2 * 257
+    assert len(found.survey.search.expander.batch.leaves) == 2 * 257

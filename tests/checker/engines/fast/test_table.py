@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from checker import Limits
-from checker.engines.fast import space as spaces
+from checker.engines.fast import expander
 from checker.engines.fast.learner import Learner
-from checker.engines.fast.space import Space
+from checker.engines.fast.search import Search
 from checker.engines.fast.table import (
     ENTERED,
     alone,
@@ -69,13 +69,14 @@ def test_a_table_takes_at_most_nine_bytes_a_row_each_time_when_it_grows():
 
 @pytest.mark.parametrize("budget", range(100_000, 310_000, 30_000))
 def test_a_table_grows_by_less_where_memory_ends_so_that_rows_have_it(budget, monkeypatch):
-    monkeypatch.setattr(spaces, "BATCH", 256)
+    monkeypatch.setattr(expander, "BATCH", 256)
     initial = load_mission("rendezvous").initial
-    space = Space(Learner(initial.setting, initial.state, Limits().pending), None)
-    row = 8 * space.packing.words + 4
-    space.left = lambda: budget - row * space.size - space.table.room.nbytes
-    while space.left() >= 0:
-        assert space.expanded < space.size
-        space.advance(min(space.expanded + 16, space.size))
+    search = Search(Learner(initial.setting, initial.state, Limits().pending), None)
+    store = search.store
+    row = 8 * store.packing.words + 4
+    store.left = lambda: budget - row * store.size - store.table.room.nbytes
+    while store.left() >= 0:
+        assert search.expanded < search.size
+        search.advance(min(search.expanded + 16, search.size), search.size)
     fullest = budget / (row + 4 * 3 / 2)
-    assert space.size > 0.93 * fullest
+    assert search.size > 0.93 * fullest

@@ -14,7 +14,7 @@ import checker.limits
 from bigactors.cli import main
 from checker import Engine, Keeping, Limits, explore
 from checker.engines.contract import Options
-from checker.engines.fast import explorer, frontier_chunks, pipeline, space, tree_compression
+from checker.engines.fast import expander, explorer, frontier_chunks, pipeline, store, tree_compression
 from checker.engines.fast.explorer import explore_fast
 from checker.engines.fast.rows import Rows
 from checker.reduction import Reduced, Reduction
@@ -30,18 +30,18 @@ SEVERAL = (2, 3, 4)
 @pytest.fixture(autouse=True)
 def small_slices(monkeypatch):
     """Let small missions have many slices, some of which are too large for their batch, and rooms that grow."""
-    monkeypatch.setattr(space, "FIRST_ROWS", 64)
-    monkeypatch.setattr(space, "BATCH", 64)
+    monkeypatch.setattr(store, "FIRST_ROWS", 64)
+    monkeypatch.setattr(expander, "BATCH", 64)
     monkeypatch.setattr(frontier_chunks, "FEW", 4)
     monkeypatch.setattr(frontier_chunks, "LATER_ROWS", 3)
     monkeypatch.setattr(pipeline, "WORTH", 1)
 
 
-@pytest.fixture(params=[space.Space.PLAIN, 1], ids=["plain", "folded"])
+@pytest.fixture(params=[store.PLAIN, 1], ids=["plain", "folded"])
 def kept(request, monkeypatch):
     """Let rows be kept as they are, or fold them all into pieces whose room grows."""
-    monkeypatch.setattr(space.Space, "PLAIN", request.param)
-    monkeypatch.setattr(space.Space, "COMPRESSED_FROM", 0)
+    monkeypatch.setattr(store, "PLAIN", request.param)
+    monkeypatch.setattr(store, "COMPRESSED_FROM", 0)
     monkeypatch.setattr(tree_compression, "FIRST", 4)
 
 
@@ -52,16 +52,17 @@ def start(name):
 def seen(initial, threads, **options):
     """Return all that an exploration found, and in which order it learned."""
     found = explore(initial, engine=Engine.FAST, threads=threads, **{"limits": SOME, **options})
-    inner = found.survey.space
-    rows = inner.rows.words[: inner.size * inner.rows.kept]
+    inner = found.survey.search
+    stored = inner.store.rows
+    rows = stored.words[: inner.size * stored.kept]
     numbers = (found.depth, found.expanded, found.transitions, found.rules, found.bounds, found.rule_runs)
-    interned = [each.tolist() for each in inner.rows.interned]
-    targets = [each for _, _, each in inner.edges(range(inner.expanded))]
+    interned = [each.tolist() for each in stored.interned]
+    targets = [each for _, _, each in inner.expander.edges(range(inner.expanded))]
     if found.complete and found.reducer is None:  # every transition leads to a row, also of a new packing
         assert sum(map(len, targets)) == found.transitions
         assert all((each >= 0).all() for each in targets)
     graph = found.survey.graph().targets.tolist()
-    return (rows.tolist(), list(map(int, found.origins)), numbers, inner.learned, interned, graph)
+    return (rows.tolist(), list(map(int, found.origins)), numbers, inner.model.learned, interned, graph)
 
 
 @pytest.mark.usefixtures("kept")
@@ -97,8 +98,8 @@ def test_representatives_are_explored_alike_by_any_number_of_threads(name, varia
 def test_generated_missions_are_explored_alike_by_any_number_of_threads(initial, plain):
     limits = Limits(configurations=300)
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(space.Space, "PLAIN", plain)
-        patch.setattr(space.Space, "COMPRESSED_FROM", 40)
+        patch.setattr(store, "PLAIN", plain)
+        patch.setattr(store, "COMPRESSED_FROM", 40)
         assert seen(initial, 3, limits=limits) == seen(initial, 1, limits=limits)
 
 
@@ -124,7 +125,7 @@ def fleet(uavs):
 def test_wide_missions_are_explored_alike_by_any_number_of_threads(monkeypatch, configurations):
     """Most pieces of a row are met by slices before they have a number: they get it where the slices are stored."""
     monkeypatch.setattr(tree_compression, "SHALLOW", 1)
-    monkeypatch.setattr(space.Space, "COMPRESSED_FROM", 200)
+    monkeypatch.setattr(store, "COMPRESSED_FROM", 200)
     limits = Limits(configurations=configurations)
     alone = seen(fleet(12), 1, limits=limits)
     assert configurations == 40 or len(alone[4][1]) > 2  # nodes: by then rows are folded twice
@@ -136,13 +137,13 @@ def test_other_threads_expand_slices_and_sift_them(monkeypatch):
     done = set()
 
     def noted(name):
-        do = getattr(frontier_chunks.Slices, name)
+        do = getattr(frontier_chunks.FrontierChunks, name)
 
         def note(self, part):
             done.add((name, threading.current_thread() is threading.main_thread()))
             do(self, part)
 
-        monkeypatch.setattr(frontier_chunks.Slices, name, note)
+        monkeypatch.setattr(frontier_chunks.FrontierChunks, name, note)
 
     noted("_expand")
     noted("_sift")
@@ -227,9 +228,9 @@ def test_other_threads_go_on_from_a_checkpoint(tmp_path, before, after):
 
 @pytest.mark.usefixtures("kept")
 def test_a_row_with_more_successors_than_a_batch_holds_is_stored_in_its_turn(monkeypatch):
-    monkeypatch.setattr(space, "BATCH", 4)
+    monkeypatch.setattr(expander, "BATCH", 4)
     few = [seen(start("oil_spill"), threads) for threads in (1, 3)]
-    monkeypatch.setattr(space, "BATCH", 64)
+    monkeypatch.setattr(expander, "BATCH", 64)
     assert few == [seen(start("oil_spill"), 1)] * 2
 
 

@@ -1,0 +1,106 @@
+"""The search: breadth-first over the rows of a store, by the successors of a model.
+
+A row's way is one loop: list its steps, choose some of them, make their successors, map these to representatives, add
+the new ones to the store. `FrontierChunks` does it for all steps, in any number of threads; the loop of partial-order
+reduction chooses some. Rows get the same numbers whoever expands them. The search visits the same configurations in
+the same order as the reference explorer, and stops at the same bounds.
+"""
+
+from collections import Counter
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from checker.engines.fast.expander import Expander
+from checker.engines.fast.frontier_chunks import FrontierChunks
+from checker.engines.fast.learned_model import AT
+from checker.engines.fast.learner import Learner
+from checker.engines.fast.model import Model
+from checker.engines.fast.store import Store
+
+if TYPE_CHECKING:
+    from checker.engines.fast.partial_order import Choosing
+    from checker.engines.fast.symmetry_tables import Exchanging
+
+
+class Search:
+    """The progress of an exploration.
+
+    Attributes:
+        store: The configurations reached so far, as rows.
+        model: The learned rules.
+        expander: Makes the successors of rows.
+        choosing: What chooses ample sets; None without partial-order reduction.
+    """
+
+    def __init__(
+        self,
+        learner: Learner,
+        limit: int | None,
+        choosing: "Choosing | None" = None,
+        exchanging: "Exchanging | None" = None,
+        threads: int = 1,
+    ) -> None:
+        self.choosing = choosing
+        self.store = Store(limit)
+        self.model = Model(learner, self.store, exchanging)
+        self.expander = Expander(self.model, choosing)
+        self._chunks = FrontierChunks(self.expander, threads)
+        self.model.see()
+        self.store.make_room(self.expander.successors)
+
+    @property
+    def size(self) -> int:
+        """The number of configurations."""
+        return self.store.size
+
+    @property
+    def expanded(self) -> int:
+        """The number of expanded configurations."""
+        return self.store.expanded
+
+    @property
+    def bytes_used(self) -> int:
+        """The bytes of rows, origins, visited set and paths; unwritten capacity takes none."""
+        paths = 0 if self.choosing is None else self.choosing.paths.held(self.size)
+        return self.store.bytes_used + paths
+
+    def rules(self) -> Counter[str]:
+        """Return the number of followed transitions of each rule."""
+        return self.model.rules(self.expander.counts.used)
+
+    def advance(self, until: int, end: int) -> None:
+        """Expand rows to row `until` or somewhat beyond, but never beyond `end`, learning on the way."""
+        while self.expanded < until:
+            if self.store.compress():
+                self.model.see()
+            if self.choosing is None:
+                self._chunks.advance(end)
+            else:
+                self._advance_by(self.choosing, until)
+
+    def _advance_by(self, choosing: "Choosing", until: int) -> None:
+        """Expand some rows before row `until`, following ample sets."""
+        from checker.engines.fast.ample_kernel import expand_reduced  # noqa: PLC0415  # compiled only for a reduction
+
+        model, store, expander = self.model, self.store, self.expander
+        new, store.state[AT] = 2 * expander.successors, store.expanded
+        store.make_room(new)
+        choosing.paths.reserve(store.rows.room)
+        words, origins, table = store.arrays
+        known = (model.loops, choosing.members, *model.symmetry, choosing.paths.trails)
+        arrays = (words, store.rows.folded, origins, table, expander.batch)
+        loop: Callable[..., bool] = expand_reduced
+        counts = (expander.met.room, expander.counts.room)
+        if not loop(*known, *arrays, until, self.size + new, *counts, store.state):
+            expander.learn()
+
+    def spill(self, folder: Path) -> None:
+        """Move rows, origins and paths to files in a folder.
+
+        Raises:
+            OSError: There is no such folder, or no room in it.
+        """
+        self.store.spill(folder)
+        if self.choosing is not None:
+            self.choosing.paths.spill(folder, self.size)
