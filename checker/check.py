@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Protocol, assert_never
 from checker.engines.capabilities import CombinationError, engines, features, require
 from checker.engines.choose import explore_by
 from checker.engines.contract import Cluster, Engine, Exploration, Keeping, Options, Reporter
+from checker.handover import Compilation, Handover
 from checker.limits import BoundMet, CheckPart, Limits, Stop, bounded
 from checker.properties.coverage import coverage
 from checker.properties.findings import MOST_VIOLATIONS, Collected
@@ -49,7 +50,7 @@ BY_LOOKING: dict[PropertyKind, Callable[[int], Inspection]] = {
 """The inspection for each property that has no proposition of the mission's own."""
 
 PATIENCE = 1.0
-"""Seconds after which the fast explorer takes over a mission from the reference explorer."""
+"""Seconds after which the fast explorer takes over a mission from the reference explorer (`checker.handover`)."""
 
 UNTIMED = "not decided: the mission has no durations; give it a section `timing`"
 
@@ -121,17 +122,20 @@ def check(  # noqa: PLR0913 - independent options
     kept, crew = keeping or Keeping(), cluster or Cluster()
     options = Options(limits, report, reduce=reducer, keeping=kept, cluster=crew, threads=threads)
 
-    def run(engine: Engine, exploring: Limits) -> Report:
-        exploration = replace(options, engine=engine, limits=exploring)
-        found = _Check(initial, asked, exploration, violations, times=times)
-        return found.run(notes, limits)
+    def run(engine: Engine, limits: Limits) -> Report:
+        exploration = replace(options, engine=engine, limits=limits)
+        return _Check(initial, asked, exploration, violations, times=times).run(notes)
 
     impatient = limits.seconds is None or limits.seconds > PATIENCE
-    if len(able) > 1 and impatient:
-        tried = run(able[0], replace(limits, seconds=PATIENCE))
-        late = any(bound.stop is Stop.TIME for bound in tried.bounds)
-        return run(able[1], replace(limits, spent=limits.spent + tried.seconds)) if late else tried
-    return run(able[0], limits)
+    if len(able) == 1 or not impatient:
+        return run(able[0], limits)
+    with Handover(PATIENCE, Compilation(initial, asked, reductions, threads, times)) as handover:
+        tried = run(able[0], replace(limits, overtaken=handover.is_due, uncounted=handover.uncounted))
+    stops = {bound.stop for bound in tried.bounds}
+    if Stop.OVERTAKEN in stops or (handover.is_waiting and Stop.MEMORY in stops):
+        spent = limits.spent + tried.seconds - handover.uncounted.seconds
+        return run(able[1], replace(limits, spent=spent))
+    return tried
 
 
 def _asked(
@@ -209,8 +213,8 @@ class _Check:
         self.deadlines: Deadlines | None = None
         self.unscheduled: tuple[str, ...] = ()
 
-    def run(self, notes: tuple[str, ...], whole: Limits) -> Report:
-        """Explore, and decide the properties within the limits of the whole check."""
+    def run(self, notes: tuple[str, ...]) -> Report:
+        """Explore, and decide the properties."""
         races = (self.races,) if self.searching else ()
         everything = (self.visited, *self.inspections.values(), *races, *self.formulas.values())
         options = self.options
@@ -223,7 +227,8 @@ class _Check:
             self.remembered = self.search()
         later = self.remembered.bounds if self.remembered else []
         seconds = self.found.seconds + (self.remembered.seconds if self.remembered else 0.0)
-        with bounded(replace(whole, spent=options.limits.spent + seconds - self.compiling())):
+        limits, spent = options.limits, options.limits.spent + seconds - self.compiling()
+        with bounded(replace(limits, spent=spent, overtaken=None)):
             verdicts = Verdicts(map(self.decide, self.properties))
             schedule = self.schedule()
         return Report(

@@ -6,7 +6,7 @@ configurations, and a later phase after a short grace.
 """
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass, field, replace
@@ -27,6 +27,7 @@ class Stop(Enum):
     MEMORY = "the memory limit of {:,.0f} MB"
     PENDING = "more than {} requests or messages of one agent pending"
     INTERRUPTION = "an interruption"
+    OVERTAKEN = "another engine, which is faster"
     NO_MEMORY = "the end of the available memory"
     NO_ROOM = "the end of the free space in {}: {}"
     NO_CHECKPOINT = "a checkpoint that can't be written to {}: {}"
@@ -105,6 +106,7 @@ class Limits:
         spill: The folder to which the fast explorer moves its rows when memory ends; None for none.
         interruption: The user's request to end.
         uncounted: The seconds that count towards no limit.
+        overtaken: Returns whether another engine takes over.
     """
 
     configurations: int | None = 2_000_000
@@ -115,6 +117,7 @@ class Limits:
     spill: str | None = None
     interruption: Interruption = field(default_factory=Interruption, compare=False, repr=False)
     uncounted: Uncounted = field(default_factory=Uncounted, compare=False, repr=False)
+    overtaken: Callable[[], bool] | None = field(default=None, compare=False, repr=False)
 
     def bound(self, stop: Stop) -> Bound:
         """Return the bound for one of these limits."""
@@ -133,6 +136,8 @@ class Limits:
         """
         if self.interruption.is_due(grace):
             return Bound(Stop.INTERRUPTION)
+        if self.overtaken is not None and self.overtaken():
+            return Bound(Stop.OVERTAKEN)
         counted = seconds + self.spent - self.uncounted.seconds
         is_over = self.seconds is not None and counted > share * self.seconds
         return self.bound(Stop.TIME) if is_over else None

@@ -76,3 +76,8 @@ def _imported(root: Path, text: str) -> Iterator[Path]:
         home = root.joinpath(*module.split("."))
         yield home.with_suffix(".py")
         yield from (home / f"{name}.py" for name in re.findall(r"\w+", names))
+
+
+def is_compiled(loop: Any) -> bool:
+    """Return whether the cache of a loop has a compiled form of it."""
+    return bool(loop._cache._cache_file._load_index())  # noqa: SLF001 - numba compiles where it finds none

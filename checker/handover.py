@@ -1,0 +1,148 @@
+"""The change of a check from the reference engine to the fast one, whose loops are compiled in the meantime.
+
+Compilation takes seconds, once after an installation. Another process compiles the loops by a check of the same
+mission, and the reference engine goes on: the engine that is ready first decides.
+"""
+
+from __future__ import annotations
+
+import os
+import pickle
+import subprocess
+import sys
+from time import monotonic
+from typing import TYPE_CHECKING, Any, NamedTuple, Self
+
+from checker.limits import Limits, Uncounted
+from checker.reduction.refusals import Reduction
+
+if TYPE_CHECKING:
+    from semantics.properties.property import Property
+    from semantics.state.configuration import Configuration
+
+ENOUGH = 20_000
+"""The configurations in which a check uses all its loops, also those of several threads."""
+
+
+class Compilation(NamedTuple):
+    """The check whose loops are compiled, as the arguments of `check`."""
+
+    initial: Configuration
+    properties: tuple[Property, ...]
+    reductions: tuple[Reduction, ...]
+    threads: int | None
+    times: bool
+
+    def is_done(self) -> bool:
+        """Return whether the main loop of the check is in the cache of compiled loops."""
+        from checker.engines.fast.numba_loading import load_numba  # noqa: PLC0415 - numba takes its time to load
+
+        load_numba()
+        try:
+            from checker.engines.fast.loop_cache import is_compiled  # noqa: PLC0415 - the same
+
+            return is_compiled(self._main_loop())
+        except RuntimeError:  # there is no folder for a cache
+            return True
+
+    def _main_loop(self) -> object:
+        if self.initial.setting.timing is not None:
+            from checker.engines.zones.location_successors import leave  # noqa: PLC0415 - the same
+
+            return leave
+        if Reduction.POR in self.reductions:
+            from checker.engines.fast.ample_kernel import expand_reduced  # noqa: PLC0415 - the same
+
+            return expand_reduced
+        from checker.engines.fast.kernel import gather  # noqa: PLC0415 - the same
+
+        return gather
+
+    def begin(self) -> subprocess.Popen[bytes]:
+        """Compile in another process."""
+        process = subprocess.Popen(
+            [sys.executable, "-m", __name__],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+            env={**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)},
+        )
+        assert process.stdin is not None
+        with process.stdin:
+            pickle.dump(self, process.stdin)
+        return process
+
+
+class Handover:
+    """The moment at which the fast engine takes over: after some seconds, as soon as its loops are compiled.
+
+    Attributes:
+        uncounted: The seconds of waiting for the compilation, which count towards no limit.
+    """
+
+    def __init__(self, after: float, compilation: Compilation) -> None:
+        self.began = monotonic()
+        self.after = after
+        self.compilation = compilation
+        self.uncounted = Uncounted()
+        self._process: subprocess.Popen[bytes] | None = None
+        self._is_due = False
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        if self._process is not None:
+            self._process.kill()
+            self._process.wait()
+
+    @property
+    def is_waiting(self) -> bool:
+        """Whether the loops are being compiled."""
+        return self._process is not None
+
+    def is_due(self) -> bool:
+        """Return whether the fast engine takes over now; begin the compilation when its time has come."""
+        since = monotonic() - self.began - self.after
+        if self._is_due or since < 0:
+            return self._is_due
+        if self._process is None:
+            self._is_due = not _has_cores() or self.compilation.is_done() or not self._begin()
+            self.began = monotonic() - self.after
+        else:
+            self.uncounted.seconds = since
+            self._is_due = self._process.poll() is not None
+        return self._is_due
+
+    def _begin(self) -> bool:
+        try:
+            self._process = self.compilation.begin()
+        except (OSError, pickle.PicklingError):
+            return False
+        return True
+
+
+def _has_cores() -> bool:
+    """Return whether there is a core for the other process."""
+    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    return cores > 1
+
+
+def _compile(job: Any) -> None:
+    from checker.check import check  # noqa: PLC0415 - only in a process of its own
+    from checker.engines.contract import Engine  # noqa: PLC0415 - the same
+
+    initial, properties, reductions, threads, times = job
+    check(
+        initial,
+        properties,
+        Limits(configurations=ENOUGH),
+        engine=Engine.FAST,
+        reduce=reductions,
+        threads=threads,
+        times=times,
+    )
+
+
+if __name__ == "__main__":
+    _compile(pickle.load(sys.stdin.buffer))  # the process that started this one wrote it
