@@ -25,6 +25,45 @@ MAY_IMPORT = {
     "bigactors": {"adapters", "checker", "specs", "semantics", "bigraphs", "physical"},
 }
 
+LAYERS = (
+    "checker.limits",
+    "checker.steps",
+    "checker.reduction",
+    "checker.engines",  # the contract of all engines, graphs, the reference engine
+    "checker.properties",
+    "checker.engines.fast",
+    "checker.engines.cluster",
+    "checker.engines.zones",
+    "checker.engines.timed",
+    "checker.traces",
+    "checker.verdicts",
+    "checker.reports",
+    "checker.transition_system",
+    "checker.models",
+    "checker.engines.choose",
+    "checker.handover",
+    "checker.check",
+)
+"""The parts of the checker: each may import those above it in this list."""
+
+UPWARD = {
+    ("checker.engines", "checker.engines.fast"),  # numba's loading, and compiled strong components
+    ("checker.engines", "checker.engines.timed"),  # for types
+    ("checker.engines", "checker.transition_system"),  # methods of `Exploration`
+    ("checker.engines.zones", "checker.engines.timed"),
+    ("checker.handover", "checker.check"),
+    ("checker.properties", "checker.engines.timed"),  # first runs, and answers about time
+    ("checker.properties", "checker.traces"),
+    ("checker.properties", "checker.verdicts"),
+    ("checker.reduction", "checker.engines"),
+    ("checker.reduction", "checker.engines.fast"),  # the templates of values
+    ("checker.reduction", "checker.properties"),
+}
+"""The imports among these parts that go the other way; remove one from here when its last import is gone."""
+
+EXPLORER = ("arrays", "store", "model", "expander", "frontier_chunks", "search", "explorer")
+"""Modules of the fast engine, each of which may import those before it: a store knows nothing of rules."""
+
 LEAF = "physical.svg"
 """The package that every room may import, since it imports none."""
 
@@ -256,6 +295,34 @@ def test_a_function_is_not_hidden_by_the_module_of_its_name():
     program = "import checker.check, semantics.successors; from checker import check; print(check.__name__)"
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
     assert done.stdout == "check\n"
+
+
+def layer_of(module: str) -> str | None:
+    return max((each for each in LAYERS if f"{module}.".startswith(f"{each}.")), key=len, default=None)
+
+
+def test_the_arrows_in_the_checker_go_one_way_but_for_those_that_remain():
+    found: dict[tuple[str, str], str] = {}
+    for each in imports():
+        one, other = layer_of(module_of(each.file)), layer_of(each.module)
+        if one and other and LAYERS.index(one) < LAYERS.index(other):
+            found[one, other] = str(each)
+    assert [text for pair, text in found.items() if pair not in UPWARD] == []
+    assert UPWARD - found.keys() == set()
+
+
+def test_every_module_of_the_checker_is_in_a_layer():
+    modules = {each for each in MODULES if each.startswith("checker.")}
+    assert [each for each in modules if layer_of(each) is None] == []
+
+
+def test_the_parts_of_the_explorer_import_one_way():
+    names = [f"checker.engines.fast.{each}" for each in EXPLORER]
+    arrows = {(module_of(each.file), each.module) for each in imports()}
+    back = [(one, other) for k, one in enumerate(names) for other in names[k + 1 :] if (one, other) in arrows]
+    assert back == []
+    rules = {f"checker.engines.fast.{each}" for each in ("learner", "decision_trees", "partial_order")}
+    assert [pair for pair in arrows if pair[0] == "checker.engines.fast.store" and pair[1] in rules] == []
 
 
 def test_the_arrows_have_no_cycle():
