@@ -21,7 +21,7 @@ from checker.engines.fast import repacking
 from checker.engines.fast.checkpoint import is_time
 from checker.engines.fast.columns import Packing
 from checker.engines.fast.learned_model import CROWDS, CUT, EXPANDED, LIMIT, SIZE
-from checker.engines.fast.store import MOST_ROWS
+from checker.engines.fast.row_store import MOST_ROWS
 
 SCHEMA = "bigactors.shard/2"
 UNKNOWN = -1

@@ -23,10 +23,10 @@ from checker.engines.fast.effects import Deeper, Varies
 from checker.engines.fast.expander import Expander
 from checker.engines.fast.learned_model import AT, EXPANDED, SIZE, SuccessorBatch
 from checker.engines.fast.learner import Learner
-from checker.engines.fast.model import Model
 from checker.engines.fast.origins import Elsewhere
+from checker.engines.fast.row_store import FIRST_ROWS, RowFormat, RowStore
 from checker.engines.fast.row_survey import RowSurvey
-from checker.engines.fast.store import FIRST_ROWS, RowFormat, Store
+from checker.engines.fast.rule_model import RuleModel
 from semantics.state.configuration import Configuration
 
 SENT = 1 << 17
@@ -154,8 +154,8 @@ class Shard:
         self.workers = workers
         self.sent = 0
         learner = Learner(initial.setting, initial.state, pending)  # type: ignore[arg-type]  # a stored one
-        self.store = Store(form=RowFormat(Elsewhere, compressible=False))  # rows travel between workers
-        self.model = Model(learner, self.store)
+        self.store = RowStore(form=RowFormat(Elsewhere, compressible=False))  # rows travel between workers
+        self.model = RuleModel(learner, self.store)
         self.expander = Expander(self.model)
         self.keys = Keys(learner.columns)
         self.outbox = Outbox(self.store.packing)

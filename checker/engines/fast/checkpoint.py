@@ -20,9 +20,9 @@ from checker.engines.archive import Kinds, read_archive, write_archive
 from checker.engines.contract import CheckpointError
 from checker.engines.fast.columns import Packing
 from checker.engines.fast.learned_model import CROWDS, CUT, EXPANDED, LIMIT, SIZE
-from checker.engines.fast.model import Model
+from checker.engines.fast.row_search import RowSearch
 from checker.engines.fast.rows import Rows
-from checker.engines.fast.search import Search
+from checker.engines.fast.rule_model import RuleModel
 from semantics.state.canonical import canonical
 
 SCHEMA = "bigactors.checkpoint/6"
@@ -88,7 +88,7 @@ def is_time(seconds: object) -> bool:
     return type(seconds) in {int, float} and 0 <= seconds < math.inf  # type: ignore[operator]  # a number
 
 
-def save(search: Search, journey: Journey, digest: str, path: Path) -> None:
+def save(search: RowSearch, journey: Journey, digest: str, path: Path) -> None:
     """Write a checkpoint; it replaces the previous one atomically.
 
     Raises:
@@ -116,7 +116,7 @@ def save(search: Search, journey: Journey, digest: str, path: Path) -> None:
     write_archive(path, head, KINDS, arrays)
 
 
-def kept_rows(model: Model) -> tuple[NDArray[Any], ...]:
+def kept_rows(model: RuleModel) -> tuple[NDArray[Any], ...]:
     """Return the rows of a model, and what was learned from them, as arrays (see `ROWS`)."""
     store, rows = model.store, model.store.rows
     return (
@@ -128,7 +128,7 @@ def kept_rows(model: Model) -> tuple[NDArray[Any], ...]:
     )
 
 
-def restore_rows(model: Model, words: int, size: int, arrays: Mapping[str, NDArray[Any]]) -> None:
+def restore_rows(model: RuleModel, words: int, size: int, arrays: Mapping[str, NDArray[Any]]) -> None:
     """Continue in a model from the rows of another one of the same mission.
 
     Raises:
@@ -142,14 +142,14 @@ def restore_rows(model: Model, words: int, size: int, arrays: Mapping[str, NDArr
     model.restore(where, Rows.of(model.store.format.origins, where.words, size, *kept), size, learned)
 
 
-def _paths(search: Search) -> tuple[NDArray[Any], ...]:
+def _paths(search: RowSearch) -> tuple[NDArray[Any], ...]:
     """Return the stored paths of partial-order reduction; empty without it."""
     if search.choosing is None:
         return (np.zeros(0, np.uint64),) * len(PATHS)
     return search.choosing.paths.kept(search.size, search.expanded)
 
 
-def resume(search: Search, digest: str, path: Path) -> Journey:
+def resume(search: RowSearch, digest: str, path: Path) -> Journey:
     """Continue in a new search from a checkpoint.
 
     Raises:
@@ -200,7 +200,7 @@ def _check(arrays: dict[str, NDArray[Any]], journey: Journey, limit: int) -> Non
         raise ValueError("its counts of omitted steps are not possible")
 
 
-def _check_counts(search: Search, counts: NDArray[np.int64], state: NDArray[np.int64]) -> None:
+def _check_counts(search: RowSearch, counts: NDArray[np.int64], state: NDArray[np.int64]) -> None:
     """Raise ValueError unless the counts are possible: a row takes each transition at most once."""
     expanded, size = int(state[0]), int(state[1])
     if (
@@ -213,7 +213,7 @@ def _check_counts(search: Search, counts: NDArray[np.int64], state: NDArray[np.i
         raise ValueError("it has more rows than transitions")
 
 
-def _recount(search: Search, counts: NDArray[np.int64], state: NDArray[np.int64]) -> None:
+def _recount(search: RowSearch, counts: NDArray[np.int64], state: NDArray[np.int64]) -> None:
     """Recompute the transitions of expanded rows; raise ValueError if counts or rows differ.
 
     A transition may have been forgotten and learned again under another number, so transitions are compared by label.
@@ -238,7 +238,7 @@ def _recount(search: Search, counts: NDArray[np.int64], state: NDArray[np.int64]
         raise ValueError("some row is no successor of an earlier row")
 
 
-def _by_label(search: Search, counts: Mapping[int, int]) -> Counter[tuple[int, str]]:
+def _by_label(search: RowSearch, counts: Mapping[int, int]) -> Counter[tuple[int, str]]:
     """Return the number of times that transitions were taken, by rule and label."""
     learner = search.model.learner
     rules, steps = learner.leaves.rule.room, learner.steps
@@ -249,7 +249,7 @@ def _by_label(search: Search, counts: Mapping[int, int]) -> Counter[tuple[int, s
     return found
 
 
-def digest_of_columns(model: Model) -> str:
+def digest_of_columns(model: RuleModel) -> str:
     """Return a digest of the values of all columns, in order: of everything that rows are made of."""
     found = sha256()
     for line in _lines(model):
@@ -257,6 +257,6 @@ def digest_of_columns(model: Model) -> str:
     return found.hexdigest()
 
 
-def _lines(model: Model) -> Iterator[str]:
+def _lines(model: RuleModel) -> Iterator[str]:
     for column in model.learner.columns.all:
         yield canonical((column.place, tuple(column.values)))

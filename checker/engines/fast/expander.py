@@ -22,7 +22,7 @@ from checker.engines.fast.learned_model import (
     WIDE,
     SuccessorBatch,
 )
-from checker.engines.fast.model import Model
+from checker.engines.fast.rule_model import RuleModel
 from checker.limits import look
 
 if TYPE_CHECKING:
@@ -48,7 +48,7 @@ class Expander:
 
     batch: SuccessorBatch
 
-    def __init__(self, model: Model, choosing: "Choosing | None" = None) -> None:
+    def __init__(self, model: RuleModel, choosing: "Choosing | None" = None) -> None:
         self.model = model
         self.store = model.store
         self.state = model.store.state

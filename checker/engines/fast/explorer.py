@@ -19,7 +19,7 @@ from checker.engines.fast.compile_progress import compilation_uncounted
 from checker.engines.fast.learner import Learner
 from checker.engines.fast.row_graph import GraphSurvey
 from checker.engines.fast.row_inspection import inspect_fast
-from checker.engines.fast.search import Search
+from checker.engines.fast.row_search import RowSearch
 from checker.engines.made_on_access import MadeOnAccess
 from checker.limits import Bound, BoundMet, CheckPart, Limits, Stop, bounded, is_full, memory_left
 from semantics.state.configuration import Configuration
@@ -75,7 +75,7 @@ class _Explorer:
         self.keeping = options.keeping
         self.learner = Learner(initial.setting, initial.state, limits.pending)  # type: ignore[arg-type]  # a stored one
         self.reduce = options.reduce
-        self.search = Search(
+        self.search = RowSearch(
             self.learner,
             limits.configurations,
             self.choosing(),

@@ -7,8 +7,8 @@ import numpy as np
 
 from checker.engines.fast.learner import Learner
 from checker.engines.fast.row_inspection import is_still, truths
+from checker.engines.fast.row_search import RowSearch
 from checker.engines.fast.row_survey import RowSurvey
-from checker.engines.fast.search import Search
 from checker.engines.graph import Graph
 from semantics.properties.propositions import Proposition
 from semantics.state.configuration import Configuration, Label
@@ -19,7 +19,7 @@ from semantics.state.signature import Name
 class GraphSurvey(RowSurvey):
     """A survey that also builds the graph."""
 
-    def __init__(self, search: Search) -> None:
+    def __init__(self, search: RowSearch) -> None:
         super().__init__(search.model, search.expander.met.used.copy())
         self.search = search
 
@@ -40,7 +40,7 @@ class GraphSurvey(RowSurvey):
         return pending_in_rows(self)
 
 
-def graph_of_search(search: Search) -> Graph:
+def graph_of_search(search: RowSearch) -> Graph:
     """Return every followed transition of the expanded configurations, in the order of the rules.
 
     The label of a `rcv_obs` omits the received observation, which only a decoded configuration has.

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from checker.engines.fast.learner import TransitionGroup
-from checker.engines.fast.model import Model
+from checker.engines.fast.rule_model import RuleModel
 from semantics.state.cell_values import AGENTS
 from semantics.state.configuration import Configuration
 from semantics.state.signature import Name
@@ -42,7 +42,7 @@ class RowSurvey:
         size: The number of configurations.
     """
 
-    def __init__(self, model: Model, taken: NDArray[np.int64]) -> None:
+    def __init__(self, model: RuleModel, taken: NDArray[np.int64]) -> None:
         self.model = model
         self.learner = model.learner
         self.taken = taken

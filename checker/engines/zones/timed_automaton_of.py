@@ -20,9 +20,9 @@ from checker.engines.fast.arrays import Growing
 from checker.engines.fast.decision_leaves import LEAF
 from checker.engines.fast.learned_model import AT, LIMIT
 from checker.engines.fast.learner import Learner
-from checker.engines.fast.model import Model
 from checker.engines.fast.origins import OriginPages
-from checker.engines.fast.store import RowFormat, Store
+from checker.engines.fast.row_store import RowFormat, RowStore
+from checker.engines.fast.rule_model import RuleModel
 from checker.engines.fast.table import most_in
 from checker.engines.fast.value_templates import settled
 from checker.engines.zones import location_successors
@@ -117,8 +117,10 @@ class Network:
         self.questions: dict[tuple[object, Name | int], int] = {}
         self.timed: LearnedClocks
         self.learner = Learner(initial.setting, initial.state, pending)  # type: ignore[arg-type]  # a stored one
-        self.store = Store(form=RowFormat(OriginPages))  # rows are reached in the order of the timed search
-        self.model = Model(self.learner, self.store)
+        self.store = RowStore(
+            form=RowFormat(OriginPages)
+        )  # rows are reached in the order of the timed search
+        self.model = RuleModel(self.learner, self.store)
         self.model.followers.append(self._see)
         self.model.see()
         self.situation = lru_cache(1 << 12)(lambda number: TimedView(self.configuration(number)))
@@ -305,7 +307,7 @@ class Network:
                 self.margin *= 2
 
     def spill(self, folder: Path) -> None:
-        """Move rows, origins and locations to files in a folder; raises OSError as `Store.spill`."""
+        """Move rows, origins and locations to files in a folder; raises OSError as `RowStore.spill`."""
         self.store.spill(folder)
         self.automaton.spill(folder)
         for each in (self.of_rows, self.before, self.said):

@@ -33,7 +33,7 @@ from checker.engines.capabilities import Feature, Why, pair_of
 from checker.engines.cluster import ray_crew, rounds, shard
 from checker.engines.cluster.explorer import Expedition
 from checker.engines.contract import Cluster
-from checker.engines.fast import store
+from checker.engines.fast import row_store
 from checker.engines.fast.rows import Rows
 from checker.engines.zones import explorer as zones
 from specs.elaboration import read_mission
@@ -205,16 +205,16 @@ def folded(other):
     """Run a pair of the fast engine and another feature with rows folded from the start; return its mark."""
     if other is Feature.RAY:
         return "not built yet"
-    seen, is_compressed = [], store.Store._is_compressed
+    seen, is_compressed = [], row_store.RowStore._is_compressed
 
     def noted(rows, packing):
         seen.append(is_compressed(rows, packing))
         return seen[-1]
 
     with (
-        patch.object(store, "PLAIN", 0),
-        patch.object(store, "COMPRESSED_FROM", 8),
-        patch.object(store.Store, "_is_compressed", noted),
+        patch.object(row_store, "PLAIN", 0),
+        patch.object(row_store, "COMPRESSED_FROM", 8),
+        patch.object(row_store.RowStore, "_is_compressed", noted),
     ):
         mark = marked(Feature.FAST, other)
     return mark if any(seen) or not mark.startswith("✓") else "✓ rows stay plain"

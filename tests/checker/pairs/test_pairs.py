@@ -17,7 +17,7 @@ from scale import IS_WHOLE
 
 from checker import CombinationError, Engine, Keeping, Limits, Reduction, check
 from checker.check import reductions_of
-from checker.engines.fast import explorer, store
+from checker.engines.fast import explorer, row_store
 from checker.engines.zones import explorer as timed_explorer
 from checker.reduction.refusals import RefusedError
 from specs.diagnostics import MissionError
@@ -103,8 +103,8 @@ def rows_that_move(monkeypatch):
     monkeypatch.setattr(timed_explorer, "CHUNK", 8)
 
     def compress():
-        monkeypatch.setattr(store, "PLAIN", 1)
-        monkeypatch.setattr(store, "COMPRESSED_FROM", 8)
+        monkeypatch.setattr(row_store, "PLAIN", 1)
+        monkeypatch.setattr(row_store, "COMPRESSED_FROM", 8)
 
     with spilled_rows():
         yield compress

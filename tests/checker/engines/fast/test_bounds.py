@@ -19,7 +19,7 @@ from checker import Engine, Keeping, Limits, check, explore
 from checker.engines.cluster import explorer as cluster
 from checker.engines.cluster.explorer import Expedition
 from checker.engines.contract import Options
-from checker.engines.fast import expander, explorer, learned_model, pipeline, store, tree_compression
+from checker.engines.fast import expander, explorer, learned_model, pipeline, row_store, tree_compression
 from checker.engines.fast.rows import Rows
 from checker.reduction import Reduced, Reduction
 from semantics import Scheduler
@@ -46,7 +46,7 @@ def of_each_mission(test):
 @pytest.fixture(autouse=True)
 def small_rooms(monkeypatch):
     """Let rooms grow, batches be too small for a row, and the clock be looked at after every other row."""
-    monkeypatch.setattr(store, "FIRST_ROWS", 8)
+    monkeypatch.setattr(row_store, "FIRST_ROWS", 8)
     monkeypatch.setattr(expander, "BATCH", 8)
     monkeypatch.setattr(pipeline, "WORTH", 4)
     monkeypatch.setattr(explorer, "CHUNK", 2)
@@ -104,8 +104,8 @@ def test_searches_go_on_from_every_size(tmp_path, name):
 @of_each_mission
 @pytest.mark.parametrize("shallow", [8, 1], ids=["once", "twice"])
 def test_searches_of_folded_rows_go_on_from_every_size(tmp_path, monkeypatch, name, shallow):
-    monkeypatch.setattr(store, "PLAIN", 1)
-    monkeypatch.setattr(store, "COMPRESSED_FROM", 0)
+    monkeypatch.setattr(row_store, "PLAIN", 1)
+    monkeypatch.setattr(row_store, "COMPRESSED_FROM", 0)
     monkeypatch.setattr(tree_compression, "FIRST", 4)
     monkeypatch.setattr(tree_compression, "SHALLOW", shallow)
     mission = load_mission(name)

@@ -77,7 +77,7 @@ def test_every_module_with_loops_is_in_the_stamp():
     engines = ("fast/kernel", "fast/table", "fast/columns", "zones/kernel", "cluster/kernel")
     assert {f"checker/engines/{name}.py" for name in engines} <= compiled
     assert "semantics/timing/actor_clocks.py" in compiled
-    assert "checker/engines/fast/model.py" not in compiled
+    assert "checker/engines/fast/rule_model.py" not in compiled
 
 
 def test_a_changed_inner_loop_of_another_file_is_compiled_anew(tmp_path, monkeypatch):

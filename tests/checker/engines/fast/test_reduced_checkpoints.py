@@ -11,7 +11,7 @@ from shipped import UNTIMED
 from swarms import LOOKS, ORBITS, mission, swarms
 
 from checker import CheckpointError, Engine, Keeping, Limits, RefusedError, Stop, explore
-from checker.engines.fast import explorer, store
+from checker.engines.fast import explorer, row_store
 from checker.reduction import Reduced, Reduction
 from semantics.properties.property import watching
 from specs.elaboration import load_mission
@@ -30,10 +30,10 @@ def small_chunks(monkeypatch):
     monkeypatch.setattr(explorer, "CHUNK", 8)
 
 
-@pytest.fixture(params=[store.PLAIN, 1], ids=["plain", "folded"])
+@pytest.fixture(params=[row_store.PLAIN, 1], ids=["plain", "folded"])
 def kept(request, monkeypatch):
-    monkeypatch.setattr(store, "PLAIN", request.param)
-    monkeypatch.setattr(store, "COMPRESSED_FROM", 0)
+    monkeypatch.setattr(row_store, "PLAIN", request.param)
+    monkeypatch.setattr(row_store, "COMPRESSED_FROM", 0)
 
 
 def searched(initial, reductions, runs=(), **options):

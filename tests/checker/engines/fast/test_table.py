@@ -6,7 +6,7 @@ import pytest
 from checker import Limits
 from checker.engines.fast import expander
 from checker.engines.fast.learner import Learner
-from checker.engines.fast.search import Search
+from checker.engines.fast.row_search import RowSearch
 from checker.engines.fast.table import (
     ENTERED,
     alone,
@@ -71,7 +71,7 @@ def test_a_table_takes_at_most_nine_bytes_a_row_each_time_when_it_grows():
 def test_a_table_grows_by_less_where_memory_ends_so_that_rows_have_it(budget, monkeypatch):
     monkeypatch.setattr(expander, "BATCH", 256)
     initial = load_mission("rendezvous").initial
-    search = Search(Learner(initial.setting, initial.state, Limits().pending), None)
+    search = RowSearch(Learner(initial.setting, initial.state, Limits().pending), None)
     store = search.store
     row = 8 * store.packing.words + 4
     store.left = lambda: budget - row * store.size - store.table.room.nbytes

@@ -14,7 +14,7 @@ import checker.limits
 from bigactors.cli import main
 from checker import Engine, Keeping, Limits, explore
 from checker.engines.contract import Options
-from checker.engines.fast import expander, explorer, frontier_chunks, pipeline, store, tree_compression
+from checker.engines.fast import expander, explorer, frontier_chunks, pipeline, row_store, tree_compression
 from checker.engines.fast.explorer import explore_fast
 from checker.engines.fast.rows import Rows
 from checker.reduction import Reduced, Reduction
@@ -30,18 +30,18 @@ SEVERAL = (2, 3, 4)
 @pytest.fixture(autouse=True)
 def small_slices(monkeypatch):
     """Let small missions have many slices, some of which are too large for their batch, and rooms that grow."""
-    monkeypatch.setattr(store, "FIRST_ROWS", 64)
+    monkeypatch.setattr(row_store, "FIRST_ROWS", 64)
     monkeypatch.setattr(expander, "BATCH", 64)
     monkeypatch.setattr(frontier_chunks, "FEW", 4)
     monkeypatch.setattr(frontier_chunks, "LATER_ROWS", 3)
     monkeypatch.setattr(pipeline, "WORTH", 1)
 
 
-@pytest.fixture(params=[store.PLAIN, 1], ids=["plain", "folded"])
+@pytest.fixture(params=[row_store.PLAIN, 1], ids=["plain", "folded"])
 def kept(request, monkeypatch):
     """Let rows be kept as they are, or fold them all into pieces whose room grows."""
-    monkeypatch.setattr(store, "PLAIN", request.param)
-    monkeypatch.setattr(store, "COMPRESSED_FROM", 0)
+    monkeypatch.setattr(row_store, "PLAIN", request.param)
+    monkeypatch.setattr(row_store, "COMPRESSED_FROM", 0)
     monkeypatch.setattr(tree_compression, "FIRST", 4)
 
 
@@ -98,8 +98,8 @@ def test_representatives_are_explored_alike_by_any_number_of_threads(name, varia
 def test_generated_missions_are_explored_alike_by_any_number_of_threads(initial, plain):
     limits = Limits(configurations=300)
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(store, "PLAIN", plain)
-        patch.setattr(store, "COMPRESSED_FROM", 40)
+        patch.setattr(row_store, "PLAIN", plain)
+        patch.setattr(row_store, "COMPRESSED_FROM", 40)
         assert seen(initial, 3, limits=limits) == seen(initial, 1, limits=limits)
 
 
@@ -125,7 +125,7 @@ def fleet(uavs):
 def test_wide_missions_are_explored_alike_by_any_number_of_threads(monkeypatch, configurations):
     """Most pieces of a row are met by slices before they have a number: they get it where the slices are stored."""
     monkeypatch.setattr(tree_compression, "SHALLOW", 1)
-    monkeypatch.setattr(store, "COMPRESSED_FROM", 200)
+    monkeypatch.setattr(row_store, "COMPRESSED_FROM", 200)
     limits = Limits(configurations=configurations)
     alone = seen(fleet(12), 1, limits=limits)
     assert configurations == 40 or len(alone[4][1]) > 2  # nodes: by then rows are folded twice

@@ -9,7 +9,7 @@ from scale import examples
 from shipped import UNTIMED
 
 from checker import Engine, Limits, explore
-from checker.engines.fast import store, tree_compression
+from checker.engines.fast import row_store, tree_compression
 from checker.engines.fast.origins import Rising
 from checker.engines.fast.rows import Rows
 from specs.elaboration import load_mission
@@ -87,7 +87,7 @@ def test_many_pieces_and_nodes_find_room():
 def test_missions_whose_rows_are_all_folded_explore_as_before(name, monkeypatch):
     initial, limits = load_mission(name).initial, Limits(configurations=600)
     plain = explore(initial, limits=limits, engine=Engine.FAST)
-    monkeypatch.setattr(store, "PLAIN", 1)
-    monkeypatch.setattr(store, "COMPRESSED_FROM", 0)
+    monkeypatch.setattr(row_store, "PLAIN", 1)
+    monkeypatch.setattr(row_store, "COMPRESSED_FROM", 0)
     found = explore(initial, limits=limits, engine=Engine.FAST)
     assert visited(found) == visited(plain)

@@ -12,7 +12,7 @@ from shipped import TIMED
 import checker.limits
 from checker import CheckpointError, Engine, Keeping, Limits, explore
 from checker.engines.archive import read_archive, write_archive
-from checker.engines.fast import store
+from checker.engines.fast import row_store
 from checker.engines.zones import explorer, timed_automaton_of, timed_checkpoint
 from specs.elaboration import load_mission
 
@@ -49,8 +49,8 @@ def cut(name, folder, at):
 def test_what_was_cut_goes_on(tmp_path, monkeypatch, name, folded):
     whole = seen(searched(name))
     if folded:
-        monkeypatch.setattr(store, "PLAIN", 0)
-        monkeypatch.setattr(store, "COMPRESSED_FROM", 5)
+        monkeypatch.setattr(row_store, "PLAIN", 0)
+        monkeypatch.setattr(row_store, "COMPRESSED_FROM", 5)
     for at in CUTS:
         found = cut(name, str(tmp_path), at)
         assert found.bounds or len(found.configurations) == len(whole[0])

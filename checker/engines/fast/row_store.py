@@ -67,7 +67,7 @@ class NoReaders:
         return alone(work, parts)
 
 
-class Store:
+class RowStore:
     """Rows, their origins and their hash table, growing together.
 
     Attributes:

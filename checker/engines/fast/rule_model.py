@@ -14,8 +14,8 @@ from checker.engines.fast.columns import Packing
 from checker.engines.fast.decision_trees import RECORD
 from checker.engines.fast.learned_model import AT, CODE, NODE, TREE, UNSORTED, LearnedModel
 from checker.engines.fast.learner import CodedSource, Learner, TransitionGroup
+from checker.engines.fast.row_store import Making, RowStore
 from checker.engines.fast.rows import Rows
-from checker.engines.fast.store import Making, Store
 from checker.limits import look
 from semantics.state.cell_values import AGENTS, Row
 from semantics.state.configuration import Configuration
@@ -34,7 +34,7 @@ Lesson = tuple[int, int, int, int]
 """What was learned once: row, tree, node and code; or a part of what was learned of symmetry, with a row below 0."""
 
 
-class Model:
+class RuleModel:
     """What is known of the rules.
 
     Who keeps tables of its own about the rules rebuilds them after each lesson: it is one of the `followers`. Call
@@ -53,7 +53,7 @@ class Model:
 
     loops: LearnedModel
 
-    def __init__(self, learner: Learner, store: Store, exchanging: "Exchanging | None" = None) -> None:
+    def __init__(self, learner: Learner, store: RowStore, exchanging: "Exchanging | None" = None) -> None:
         self.learner = learner
         self.store = store
         self.exchanging = exchanging

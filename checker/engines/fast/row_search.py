@@ -15,15 +15,15 @@ from checker.engines.fast.expander import Expander
 from checker.engines.fast.frontier_chunks import FrontierChunks
 from checker.engines.fast.learned_model import AT
 from checker.engines.fast.learner import Learner
-from checker.engines.fast.model import Model
-from checker.engines.fast.store import Store
+from checker.engines.fast.row_store import RowStore
+from checker.engines.fast.rule_model import RuleModel
 
 if TYPE_CHECKING:
     from checker.engines.fast.partial_order import Choosing
     from checker.engines.fast.symmetry_tables import Exchanging
 
 
-class Search:
+class RowSearch:
     """The progress of an exploration.
 
     Attributes:
@@ -42,8 +42,8 @@ class Search:
         threads: int = 1,
     ) -> None:
         self.choosing = choosing
-        self.store = Store(limit)
-        self.model = Model(learner, self.store, exchanging)
+        self.store = RowStore(limit)
+        self.model = RuleModel(learner, self.store, exchanging)
         self.expander = Expander(self.model, choosing)
         self._chunks = FrontierChunks(self.expander, threads)
         self.model.see()
