@@ -28,9 +28,11 @@ from checker.engines.fast.learned_model import (
     ALPHA,
     AT,
     KEPT,
+    NODE,
     SIZE,
     TREE,
     TURNS,
+    UNKNOWN,
     WORDS,
     LearnedModel,
     code_at,
@@ -41,6 +43,14 @@ from checker.engines.fast.make_successors import make_plain, put_stored
 from checker.engines.fast.table import Words, bits_for, entry_of, find, hashed
 from checker.engines.fast.tree_compression import FoldedTable, unfold
 from checker.engines.zones import timed_automaton as automata
+from checker.engines.zones.clock_images import (
+    UNNAMED,
+    ClockImages,
+    FormerNames,
+    note_clock,
+    note_members,
+    note_windows,
+)
 from checker.engines.zones.difference_bounds import NONE
 from checker.engines.zones.timed_automaton import DEADLINE, EDGE, LOCATION, TEST
 from semantics.timing.actor_clocks import BOUND
@@ -295,6 +305,8 @@ def add_deadlines(
 @inner(cache=True)
 def target_row(
     m: LearnedModel,
+    x: Any,
+    d: Any,
     f: FoldedTable | None,
     words: Words,
     source: Words,
@@ -308,16 +320,18 @@ def target_row(
     most: int,
     state: State,
 ) -> int:
-    """Return the row that a step leads to, new at the first visit; -1 if a tree lacks an answer, -2 without room.
+    """Return the row that a step leads to, new at the first visit; -1 if something is not learned yet, -2 without room.
 
-    Its words are then in `target`.
+    Its words are then in `target`. With symmetry (`x` and scratch space `d`), its representative is in `d.image`.
     """
     width, stored = state[WORDS], state[KEPT]
     if make_plain(m, f, source, at, step, target, 0, width, state) < 0:
         state[AT] = row
         return -1
-    if put_stored(m, None, None, f, target, 0, width, True, kept, 0, state) < 0:
-        return -2
+    there = put_stored(m, x, d, f, target, 0, width, True, kept, 0, state)
+    if there < 0:
+        state[AT] = row
+        return -1 if there == UNKNOWN else -2
     digest = hashed(kept, 0, stored)
     bits = np.uint32(bits_for(len(table)))
     found = find(words, table, kept, 0, digest, stored, bits)
@@ -346,20 +360,24 @@ def source_of(t: LearnedClocks, a: LocationView, done: int, end: int, clock: int
 
 @inner(cache=True)
 def add_edges(  # each argument is another part of the state
-    m: LearnedModel, t: LearnedClocks, g: AutomatonGrowth, a: LocationView, b: LocationView,
+    m: LearnedModel, t: LearnedClocks, n: Any, g: AutomatonGrowth, a: LocationView, b: LocationView,
     here: int, row: int, times: int, number: int, step: int,
     choices: Ints, s: State,
 ) -> int:  # fmt: skip
     """Add the edges of a step to a row that was looked at, one for each combination of tests and choices.
 
     One choice for each vehicle that leaves its restoring place: whether its endurance was restored in full. One choice
-    for each window that becomes bound: whether it is already over.
+    for each window that becomes bound: whether it is already over. With symmetry, `n` has the names that the target had
+    before its representative replaced it.
     """
     done, end = t.steps[times], t.steps[times + 1]
     count, said = np.int64(0), np.int64(0)
     for vehicle in range(len(t.restored) // RESTORING):
         restored, aloft = t.restored[RESTORING * vehicle], t.restored[RESTORING * vehicle + 1]
-        if a.stamps[restored] == a.counts[STAMP] and b.stamps[restored] != b.counts[STAMP]:
+        later = np.int64(restored)
+        if n is not None:
+            later = np.int64(n.restored[vehicle])
+        if a.stamps[restored] == a.counts[STAMP] and b.stamps[later] != b.counts[STAMP]:
             at = CHOICE * count
             choices[at], choices[at + 1], choices[at + 2] = (
                 a.at[restored],
@@ -372,13 +390,16 @@ def add_edges(  # each argument is another part of the state
         for k in range(done, end):
             if t.done[k] == -1 - window:
                 value = UNBOUND
-        if value == 0 and steps_of_clause(m, b, t.windows[WINDOW * window]) > 0:
+        after = np.int64(window)
+        if n is not None:
+            after = np.int64(n.windows[window])
+        if value == 0 and steps_of_clause(m, b, t.windows[WINDOW * after]) > 0:
             value = BOUND
             if within >= 0:
                 at = CHOICE * count
-                choices[at], choices[at + 1], choices[at + 2] = 1, within, -1 - window
+                choices[at], choices[at + 1], choices[at + 2] = 1, within, -1 - after
                 count += 1
-        said += value * 3**window
+        said += value * 3**after
     begin, last = t.steps[times + 2], t.steps[times + 3]
     for test in range(begin, max(last, begin + 1)):
         clock, least, most = np.int64(NONE), np.int64(0), np.int64(NONE)
@@ -413,7 +434,7 @@ def add_edges(  # each argument is another part of the state
             g.edges[at + automata.TESTS], g.edges[at + automata.TESTS_END] = fresh, s[TESTED]
             g.edges[at + automata.SOURCES], g.edges[at + automata.LEARNED] = s[SOURCED], step
             g.edges[at + automata.FIRST] = NONE
-            add_sources(t, g, a, b, done, end, target, choices, count, chosen, s)
+            add_sources(t, n, g, a, b, done, end, target, choices, count, chosen, s)
             s[LEAVING] += 1
     return KNOWN
 
@@ -434,15 +455,18 @@ def put(tests: Ints, s: State, clock: int, least: int, most: int) -> None:
 
 @inner(cache=True)
 def add_sources(
-    t: LearnedClocks, g: AutomatonGrowth, a: LocationView, b: LocationView, done: int, end: int,
+    t: LearnedClocks, n: Any, g: AutomatonGrowth, a: LocationView, b: LocationView, done: int, end: int,
     target: int, choices: Ints, count: int, chosen: int,
     s: State,
 ) -> None:  # fmt: skip
     """Add for each clock of the target the source clock that continues in it."""
     clocks = g.locations[LOCATION * target + automata.CLOCKS]
     for index in range(1, b.counts[CLOCKS]):
-        clock = g.clocks[clocks + index - 1]
-        source = source_of(t, a, done, end, clock, index - b.at[clock])
+        clock = np.int64(g.clocks[clocks + index - 1])
+        earlier = index - b.at[clock]
+        if n is not None:
+            clock = np.int64(n.clocks[clock])
+        source = source_of(t, a, done, end, clock, earlier)
         for k in range(count):
             if choices[CHOICE * k + 2] == clock and is_second(chosen, count, k):
                 source = 0
@@ -475,10 +499,14 @@ def begin(
 @njit(cache=True)
 def leave(
     m: LearnedModel, t: LearnedClocks, g: AutomatonGrowth, a: LocationView, b: LocationView,
-    words: Words, f: FoldedTable | None, origins: Any, table: Any, most: int,
+    x: Any, d: Any, i: Any, n: Any, words: Words, f: FoldedTable | None, origins: Any, table: Any, most: int,
     target: Words, kept: Words, taken: Ints, choices: Ints, locations: State, state: State, s: State,
 ) -> int:  # fmt: skip
-    """Add the edges of the given locations, from the next undone one; return why that ended."""
+    """Add the edges of the given locations, from the next undone one; return why that ended.
+
+    With symmetry, representatives replace targets: `x` and `d` are the tables and scratch space of `canonicalise`, `i`
+    and `n` those of `clock_images`.
+    """
     while s[DONE] < len(locations):
         here = locations[s[DONE]]
         row, began = np.int64(g.rows[here]), (s[LEAVING], s[TESTED], s[SOURCED])
@@ -491,8 +519,8 @@ def leave(
         why = KNOWN
         if not a.counts[IS_CROWDED]:
             why = leave_by_steps(
-                m, t, g, a, b, words, source, at, f, origins, table, most, target, kept, taken, choices, here, row,
-                state, s,
+                m, t, g, a, b, x, d, i, n, words, source, at, f, origins, table, most, target, kept, taken, choices,
+                here, row, state, s,
             )  # fmt: skip
         if why != KNOWN:
             s[LEAVING], s[TESTED], s[SOURCED] = began
@@ -504,8 +532,46 @@ def leave(
 
 
 @inner(cache=True)
+def is_target(
+    m: LearnedModel,
+    f: FoldedTable | None,
+    source: Words,
+    at: int,
+    step: int,
+    target: Words,
+    scratch: Words,
+    state: State,
+) -> bool:
+    """Return whether a step leads to the row in `target`, before its representative replaces it."""
+    width = state[WORDS]
+    make_plain(m, f, source, at, step, scratch, 0, width, state)
+    for word in range(width):
+        if scratch[word] != target[word]:
+            return False
+    return True
+
+
+@inner(cache=True)
+def note_names(t: LearnedClocks, x: ClockImages, n: FormerNames, place: Ints, v: LocationView) -> bool:
+    """Note how the clocks and windows of a representative were called; False if an image is not learned yet."""
+    note_members(place, n)
+    if not note_windows(x, place, n, t.restored, RESTORING):
+        return False
+    for clock in t.lasting:
+        if not note_clock(x, n, clock):
+            return False
+    for k in range(len(t.vehicles) + v.counts[ACTORS]):
+        record = ANSWER * v.answers[k]
+        for run in range(t.answers[record], t.answers[record + 1]):
+            if not note_clock(x, n, t.running[RUNNING * run + CLOCK]):
+                return False
+    return True
+
+
+@inner(cache=True)
 def leave_by_steps(
     m: LearnedModel, t: LearnedClocks, g: AutomatonGrowth, a: LocationView, b: LocationView,
+    x: Any, d: Any, i: Any, n: Any,
     words: Words, source: Words, at: int, f: FoldedTable | None, origins: Any, table: Any, most: int,
     target: Words, kept: Words, taken: Ints, choices: Ints, here: int, row: int, state: State, s: State,
 ) -> int:  # fmt: skip
@@ -518,21 +584,32 @@ def leave_by_steps(
             turn, alike = m.steps[STEP * step + TURN], m.steps[STEP * step + ALIKE]
             if turn >= 0 and turn != a.counts[ITS_TURN]:
                 continue
-            to = target_row(m, f, words, source, at, row, step, target, kept, origins, table, most, state)
+            to = target_row(m, x, d, f, words, source, at, row, step, target, kept, origins, table, most, state)
             if to < 0:
                 return MISS if to == -1 else FULL
             if to >= len(g.of_rows) or 2 * number + 2 > len(taken):
                 return FULL
             again = False
             for other in range(own, number if k < a.counts[AGENTS] and alike >= 0 else own):
-                again = again or (taken[2 * other] == to and taken[2 * other + 1] == alike)
+                earlier = taken[2 * other + 1]
+                if taken[2 * other] == to and m.steps[STEP * earlier + ALIKE] == alike:
+                    if x is None:
+                        again = True
+                    else:  # targets that are exchanged are different ones
+                        again = again or is_target(m, f, source, at, earlier, target, kept, state)
             if again:
                 continue
-            taken[2 * number], taken[2 * number + 1] = to, alike
-            if not find_steps(m, t, target, 0, to, b, state):
+            taken[2 * number], taken[2 * number + 1] = to, step
+            reached = target
+            if x is not None:
+                reached = d.image
+            if not find_steps(m, t, reached, 0, to, b, state):
+                return MISS
+            if x is not None and not note_names(t, i, n, d.place, b):
+                state[NODE] = UNNAMED
                 return MISS
             times = TIMES * (t.answers[record + 2] + step - first)
-            if add_edges(m, t, g, a, b, here, to, times, number, step, choices, s) == FULL:
+            if add_edges(m, t, n, g, a, b, here, to, times, number, step, choices, s) == FULL:
                 return FULL
             number += 1
     return KNOWN
