@@ -129,7 +129,11 @@ class Deadlines:
         return Violation("late", message, trace, details, path=path)
 
     def _path(
-        self, run: TimedRun, is_awaited: Callable[[Configuration, Name], bool], since: int = 0, about: Name = ""
+        self,
+        run: TimedRun,
+        is_awaited: Callable[[Configuration, Name], bool],
+        since: int = 0,
+        about: Name = "",
     ) -> tuple[Leg, ...]:
         """Return the critical path of a run, extended to the awaited event."""
         onward = self.times.way_to(run, is_awaited, about)
@@ -174,7 +178,7 @@ class Deadlines:
         message = f"{vehicle} lasts {self.text(lasts)}, and is unrestored for longer at {self.clock(run.end)}"
         details = tuple(self._unsaid(trace.configurations[-1]))
         since = run.end - lasts - 1
-        path = self._path(run, lambda c, name: is_restored(c, name), since, vehicle)
+        path = self._path(run, is_restored, since, vehicle)
         return Violation("exhausted", message, trace, details, subject=vehicle, path=path)
 
     def schedule(self, asked: Iterable[Property]) -> Schedule:

@@ -38,7 +38,9 @@ def check_times(c: Configuration, renaming: Renaming) -> None:
             raise Unlike("the times of their events differ")
     again = sorted(_reappearing(c.setting))
     if again and any(name in c.alpha for name in renaming.names):
-        raise Unlike(f"'{again[0]}' may vanish in flight and appear: of two flights of it one is taken by name")
+        raise Unlike(
+            f"'{again[0]}' may vanish in flight and appear: of two flights of it one is taken by name"
+        )
 
 
 def _check_endurances(timing: Timing, renaming: Renaming) -> None:
@@ -58,9 +60,7 @@ def _reappearing(setting: Setting) -> set[Name]:
     """Return the vehicles that may vanish and appear again, so that an old flight of theirs is still pending."""
     vanishing = {each.entity for each in setting.environment if isinstance(each, Vanishes)}
     return {
-        each.entity
-        for each in setting.environment
-        if isinstance(each, Appears) and each.entity in vanishing
+        each.entity for each in setting.environment if isinstance(each, Appears) and each.entity in vanishing
     }
 
 
@@ -83,4 +83,3 @@ def renamed_clock(clock: ActorClock, renaming: Renaming, clauses: Sequence[Claus
         assert isinstance(clock.of, int)
         return clock._replace(of=images_of_clauses(clauses, renaming)[clock.of])
     return clock._replace(of=renaming.value(clock.of))
-

@@ -33,7 +33,7 @@ from semantics.state.physical_model import is_aboard
 from semantics.state.printing import print_configuration
 from semantics.state.requests import CTR, FLY, READY, SND
 from semantics.state.signature import REGION, Name
-from semantics.successors import SERVING, by_clause, expand, rules_of, steps
+from semantics.successors import SERVING, by_clause, rules_of, steps
 
 Rule = Callable[[Configuration, Any], Iterable[Transition]]
 """A rule, given a configuration and its agent or clause."""

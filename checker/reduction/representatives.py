@@ -65,7 +65,9 @@ def _orders(items: Items, said: Said) -> list[tuple[Member, ...]]:
             choices = [permutations(group) if group in tied else (group,) for group in groups]
             return [
                 tuple(member for group in reversed(chosen) for member in group)
-                for chosen in product(*reversed(choices))  # the compiled loops vary the first group fastest, too
+                for chosen in product(
+                    *reversed(choices)
+                )  # the compiled loops vary the first group fastest, too
             ]
         colours[tied[0][0]] = mix(colours[tied[0][0]], 1)
 

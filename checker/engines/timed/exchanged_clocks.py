@@ -64,7 +64,9 @@ class ClockExchange:
         owner = self.symmetry.items.owner
         return self.symmetry.items.exchanging({owner[one]: owner[other], owner[other]: owner[one]})
 
-    def order(self, source: Iterable[ActorClock], renaming: Renaming, target: Iterable[ActorClock]) -> list[int]:
+    def order(
+        self, source: Iterable[ActorClock], renaming: Renaming, target: Iterable[ActorClock]
+    ) -> list[int]:
         """Return for each clock of an exchanged configuration the index of the original one.
 
         Equal clocks keep their order: the oldest stays the first.

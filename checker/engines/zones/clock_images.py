@@ -15,6 +15,15 @@ from numpy.typing import NDArray
 from checker.engines.fast.canonicalise import led
 from checker.engines.fast.jit_decorators import inner
 from checker.engines.fast.table import Words
+from checker.engines.zones.location_views import (
+    ACTORS,
+    ANSWER,
+    CLOCK,
+    RESTORING,
+    RUNNING,
+    LearnedClocks,
+    LocationView,
+)
 
 Ints = NDArray[np.int32]
 
@@ -71,15 +80,15 @@ def image_of(x: ClockImages, subject: int, members: Ints) -> int:
 
 
 @inner(cache=True)
-def note_windows(x: ClockImages, place: Ints, n: FormerNames, restored: Ints, step: int) -> bool:
+def note_windows(x: ClockImages, place: Ints, n: FormerNames, restored: Ints) -> bool:
     """Note the windows, and the clocks RESTORED, under the names of a representative; False if one is unknown."""
     for window in range(x.windows):
         image = image_of(x, window, place)
         if image < 0:
             return False
         n.windows[window] = image
-    for vehicle in range(len(restored) // step):
-        image = image_of(x, x.windows + restored[step * vehicle], place)
+    for vehicle in range(len(restored) // RESTORING):
+        image = image_of(x, x.windows + restored[RESTORING * vehicle], place)
         if image < 0:
             return False
         n.restored[vehicle] = image - x.windows
@@ -100,3 +109,20 @@ def note_clock(x: ClockImages, n: FormerNames, clock: int) -> bool:
     if former >= 0:
         n.clocks[clock] = former - x.windows
     return former >= 0
+
+
+@inner(cache=True)
+def note_names(t: LearnedClocks, x: ClockImages, n: FormerNames, place: Ints, v: LocationView) -> bool:
+    """Note how the clocks and windows of a representative were called; False if an image is not learned yet."""
+    note_members(place, n)
+    if not note_windows(x, place, n, t.restored):
+        return False
+    for clock in t.lasting:
+        if not note_clock(x, n, clock):
+            return False
+    for k in range(len(t.vehicles) + v.counts[ACTORS]):
+        record = ANSWER * v.answers[k]
+        for run in range(t.answers[record], t.answers[record + 1]):
+            if not note_clock(x, n, t.running[RUNNING * run + CLOCK]):
+                return False
+    return True

@@ -1,57 +1,47 @@
 """The compiled loops that unfold a mission: the automaton's locations and edges, from rows and learned trees.
 
-One walk through each actor's trees yields the steps of a row and their clocks. A location is a row with the states of
+A location is a row with the states of
 the windows' clocks, as digits of a number in base 3.
 """
 
 # mypy: disable-error-code="return-value, assignment, arg-type, no-any-return"
 # (numba infers the types of compiled functions; mypy takes its integers for Python's)
 
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from checker.engines.fast.decision_leaves import (
-    ALIKE,
-    CROWDED,
-    END,
-    FIRST,
-    FLAGS,
-    LEAF,
-    STEP,
-    TURN,
-)
+from checker.engines.fast.decision_leaves import ALIKE, END, FIRST, LEAF, STEP, TURN
 from checker.engines.fast.jit_decorators import inner, njit
 from checker.engines.fast.kernel import add_row
-from checker.engines.fast.learned_model import (
-    ALPHA,
-    AT,
-    KEPT,
-    NODE,
-    SIZE,
-    TREE,
-    TURNS,
-    UNKNOWN,
-    WORDS,
-    LearnedModel,
-    code_at,
-    first_turn,
-    walk,
-)
+from checker.engines.fast.learned_model import AT, KEPT, NODE, SIZE, UNKNOWN, WORDS, LearnedModel
 from checker.engines.fast.make_successors import make_plain, put_stored
 from checker.engines.fast.table import Words, bits_for, entry_of, find, hashed
 from checker.engines.fast.tree_compression import FoldedTable, unfold
 from checker.engines.zones import timed_automaton as automata
-from checker.engines.zones.clock_images import (
-    UNNAMED,
-    ClockImages,
-    FormerNames,
-    note_clock,
-    note_members,
-    note_windows,
-)
+from checker.engines.zones.clock_images import UNNAMED, note_names
 from checker.engines.zones.difference_bounds import NONE
+from checker.engines.zones.location_views import (
+    ACTORS,
+    AGENTS,
+    ANSWER,
+    CHOICE,
+    CLOCK,
+    CLOCKS,
+    HI,
+    IS_CROWDED,
+    ITS_TURN,
+    RESTORING,
+    RUNNING,
+    STAMP,
+    TIMES,
+    WINDOW,
+    AutomatonGrowth,
+    LearnedClocks,
+    LocationView,
+    find_steps,
+)
 from checker.engines.zones.timed_automaton import DEADLINE, EDGE, LOCATION, TEST
 from semantics.timing.actor_clocks import BOUND
 from semantics.timing.actor_clocks import FREE as UNBOUND
@@ -59,84 +49,6 @@ from semantics.timing.actor_clocks import FREE as UNBOUND
 Ints = NDArray[np.int32]
 State = NDArray[np.int64]
 
-
-class LearnedClocks(NamedTuple):
-    """The learned clocks of actors, for the loops.
-
-    Attributes:
-        agents, clauses: The trees for the clocks of the actors of `LearnedModel`, in the same order.
-        vehicles: The trees for the clocks of vehicles with an endurance.
-        answers: For each leaf of those trees the ranges of its clocks and of its steps (`ANSWER` numbers).
-        running: Clocks with their bounds (`RUNNING`).
-        steps: For each step the ranges of the clocks that it ends and of its tests (`TIMES`).
-        done, tests: Those clocks; those tests, a disjunction (`TEST`).
-        served: For each clock whether it belongs to a request; there may be several of those.
-        lasting: The clocks that run everywhere.
-        restored: For each vehicle its clocks RESTORED and ALOFT, and the time that restoring takes (`RESTORING`).
-        windows: For each window its clause, and its end or `NONE` (`WINDOW`); its clock has the number -1 - window.
-    """
-
-    agents: Ints
-    clauses: Ints
-    vehicles: Ints
-    answers: Ints
-    running: Ints
-    steps: Ints
-    done: Ints
-    tests: Ints
-    served: Ints
-    lasting: Ints
-    restored: Ints
-    windows: Ints
-
-
-ANSWER, RUNNING, TIMES, RESTORING, WINDOW, CHOICE = 4, 3, 4, 3, 2, 3
-CLOCK, LO, HI = range(RUNNING)
-
-
-class AutomatonGrowth(NamedTuple):
-    """The growing automaton, with room, and additional data for each location.
-
-    Attributes:
-        rows, windows: The row of each location, and the states of the windows' clocks.
-        of_rows: For each row its last location, -1 for none.
-        before: For each location the previous one of the same row.
-    """
-
-    locations: Ints
-    edges: Ints
-    tests: Ints
-    sources: Ints
-    deadlines: Ints
-    clocks: Ints
-    rows: Ints
-    windows: State
-    of_rows: Ints
-    before: Ints
-
-
-class LocationView(NamedTuple):
-    """The steps and clocks of one row, as `find_steps` finds them.
-
-    Attributes:
-        leaves: For each actor its leaf: the agents' first, then the clauses'.
-        answers: For each vehicle and then for each actor the leaf with its clocks.
-        counts: The numbers of the agents' actors and of all actors, the turn, whether the row is crowded, the stamp of
-            the view, and the number of clocks.
-        at, many, stamps: For each clock its first index, its multiplicity, and the stamp of the view with this data.
-        bound: For each clock the stamp of the view in which an in-turn step ends it.
-    """
-
-    leaves: Ints
-    answers: Ints
-    counts: State
-    at: Ints
-    many: Ints
-    stamps: State
-    bound: State
-
-
-AGENTS, ACTORS, ITS_TURN, IS_CROWDED, STAMP, CLOCKS = range(6)
 
 LOCATED, LEAVING, TESTED, SOURCED, DEADLINED, CLOCKED, WIDEST, DONE = range(8)
 """The positions in the loops' state.
@@ -147,75 +59,6 @@ and the number of given locations that are done.
 
 KNOWN, MISS, FULL = range(3)
 """Why the loops return: all is done, a tree lacks an answer, or there is no room."""
-
-
-@inner(cache=True)
-def find_steps(
-    m: LearnedModel, t: LearnedClocks, words: Words, at: int, row: int, v: LocationView, state: State
-) -> bool:
-    """Find the steps and clocks of a row whose words begin at `at`; False if a tree lacks an answer."""
-    state[AT] = row
-    first, last = np.int64(0), np.int64(len(m.agents))
-    if state[ALPHA] >= 0:
-        group = code_at(words, at, m.columns, state[ALPHA])
-        first, last = np.int64(m.agents_from[group]), np.int64(m.agents_from[group + 1])
-    agents, vehicles = last - first, len(t.vehicles)
-    actors = agents + len(m.clauses)
-    flags = np.int64(0)
-    for k in range(actors):
-        tree = m.agents[first + k] if k < agents else m.clauses[k - agents]
-        reference = walk(words, at, m.root[tree], m.nodes, m.next, state)
-        if reference == 0:
-            state[TREE] = tree
-            return False
-        v.leaves[k] = -reference - 1
-        flags |= m.leaves[LEAF * (-reference - 1) + FLAGS]
-    for k in range(vehicles + actors):
-        if k < vehicles:
-            tree = t.vehicles[k]
-        elif k < vehicles + agents:
-            tree = t.agents[first + k - vehicles]
-        else:
-            tree = t.clauses[k - vehicles - agents]
-        reference = walk(words, at, m.root[tree], m.nodes, m.next, state)
-        if reference == 0:
-            state[TREE] = tree
-            return False
-        v.answers[k] = -reference - 1
-    v.counts[AGENTS], v.counts[ACTORS] = agents, actors
-    v.counts[ITS_TURN] = first_turn(m.leaves, m.steps, v.leaves, agents) if state[TURNS] else -1
-    v.counts[IS_CROWDED] = flags & CROWDED
-    v.counts[STAMP] += 1
-    note_clocks(m, t, v)
-    return True
-
-
-@inner(cache=True)
-def note_clocks(m: LearnedModel, t: LearnedClocks, v: LocationView) -> None:
-    """Record the first index of each clock, and the bound clocks: those that an in-turn step ends."""
-    stamp, index = v.counts[STAMP], np.int64(1)
-    for clock in t.lasting:
-        v.at[clock], v.many[clock], v.stamps[clock] = index, 1, stamp
-        index += 1
-    vehicles = len(t.vehicles)
-    for k in range(vehicles + v.counts[ACTORS]):
-        record = ANSWER * v.answers[k]
-        for run in range(t.answers[record], t.answers[record + 1]):
-            clock = t.running[RUNNING * run + CLOCK]
-            if v.stamps[clock] != stamp:
-                v.at[clock], v.many[clock], v.stamps[clock] = index, 0, stamp
-            v.many[clock] += 1
-            index += 1
-    v.counts[CLOCKS] = index
-    for k in range(v.counts[ACTORS]):
-        leaf, record = LEAF * v.leaves[k], ANSWER * v.answers[vehicles + k]
-        for one in range(m.leaves[leaf + END] - m.leaves[leaf + FIRST]):
-            turn = m.steps[STEP * (m.leaves[leaf + FIRST] + one) + TURN]
-            if turn < 0 or turn == v.counts[ITS_TURN]:
-                times = TIMES * (t.answers[record + 2] + one)
-                for at in range(t.steps[times], t.steps[times + 1]):
-                    if t.done[at] >= 0:
-                        v.bound[t.done[at]] = stamp
 
 
 @inner(cache=True)
@@ -359,19 +202,9 @@ def source_of(t: LearnedClocks, a: LocationView, done: int, end: int, clock: int
 
 
 @inner(cache=True)
-def add_edges(  # each argument is another part of the state
-    m: LearnedModel, t: LearnedClocks, n: Any, g: AutomatonGrowth, a: LocationView, b: LocationView,
-    here: int, row: int, times: int, number: int, step: int,
-    choices: Ints, s: State,
-) -> int:  # fmt: skip
-    """Add the edges of a step to a row that was looked at, one for each combination of tests and choices.
-
-    One choice for each vehicle that leaves its restoring place: whether its endurance was restored in full. One choice
-    for each window that becomes bound: whether it is already over. With symmetry, `n` has the names that the target had
-    before its representative replaced it.
-    """
-    done, end = t.steps[times], t.steps[times + 1]
-    count, said = np.int64(0), np.int64(0)
+def choices_of_vehicles(t: LearnedClocks, n: Any, a: LocationView, b: LocationView, choices: Ints) -> int:
+    """Note a choice for each vehicle that leaves its restoring place; return their number."""
+    count = np.int64(0)
     for vehicle in range(len(t.restored) // RESTORING):
         restored, aloft = t.restored[RESTORING * vehicle], t.restored[RESTORING * vehicle + 1]
         later = np.int64(restored)
@@ -385,6 +218,23 @@ def add_edges(  # each argument is another part of the state
                 aloft,
             )
             count += 1
+    return count
+
+
+@inner(cache=True)
+def add_edges(  # each argument is another part of the state
+    m: LearnedModel, t: LearnedClocks, n: Any, g: AutomatonGrowth, a: LocationView, b: LocationView,
+    here: int, row: int, times: int, number: int, step: int,
+    choices: Ints, s: State,
+) -> int:  # fmt: skip
+    """Add the edges of a step to a row that was looked at, one for each combination of tests and choices.
+
+    One choice for each vehicle that leaves its restoring place: whether its endurance was restored in full. One choice
+    for each window that becomes bound: whether it is already over. With symmetry, `n` has the names that the target had
+    before its representative replaced it.
+    """
+    done, end = t.steps[times], t.steps[times + 1]
+    count, said = np.int64(choices_of_vehicles(t, n, a, b, choices)), np.int64(0)
     for window in range(len(t.windows) // WINDOW):
         value, within = digit(g.windows[here], window), t.windows[WINDOW * window + 1]
         for k in range(done, end):
@@ -545,27 +395,10 @@ def is_target(
     """Return whether a step leads to the row in `target`, before its representative replaces it."""
     width = state[WORDS]
     make_plain(m, f, source, at, step, scratch, 0, width, state)
+    same = True
     for word in range(width):
-        if scratch[word] != target[word]:
-            return False
-    return True
-
-
-@inner(cache=True)
-def note_names(t: LearnedClocks, x: ClockImages, n: FormerNames, place: Ints, v: LocationView) -> bool:
-    """Note how the clocks and windows of a representative were called; False if an image is not learned yet."""
-    note_members(place, n)
-    if not note_windows(x, place, n, t.restored, RESTORING):
-        return False
-    for clock in t.lasting:
-        if not note_clock(x, n, clock):
-            return False
-    for k in range(len(t.vehicles) + v.counts[ACTORS]):
-        record = ANSWER * v.answers[k]
-        for run in range(t.answers[record], t.answers[record + 1]):
-            if not note_clock(x, n, t.running[RUNNING * run + CLOCK]):
-                return False
-    return True
+        same = same and scratch[word] == target[word]
+    return same
 
 
 @inner(cache=True)
@@ -584,7 +417,9 @@ def leave_by_steps(
             turn, alike = m.steps[STEP * step + TURN], m.steps[STEP * step + ALIKE]
             if turn >= 0 and turn != a.counts[ITS_TURN]:
                 continue
-            to = target_row(m, x, d, f, words, source, at, row, step, target, kept, origins, table, most, state)
+            to = target_row(
+                m, x, d, f, words, source, at, row, step, target, kept, origins, table, most, state
+            )
             if to < 0:
                 return MISS if to == -1 else FULL
             if to >= len(g.of_rows) or 2 * number + 2 > len(taken):
@@ -593,10 +428,10 @@ def leave_by_steps(
             for other in range(own, number if k < a.counts[AGENTS] and alike >= 0 else own):
                 earlier = taken[2 * other + 1]
                 if taken[2 * other] == to and m.steps[STEP * earlier + ALIKE] == alike:
-                    if x is None:
-                        again = True
-                    else:  # targets that are exchanged are different ones
-                        again = again or is_target(m, f, source, at, earlier, target, kept, state)
+                    same = True
+                    if x is not None:  # targets that are exchanged are different ones
+                        same = is_target(m, f, source, at, earlier, target, kept, state)
+                    again = again or same
             if again:
                 continue
             taken[2 * number], taken[2 * number + 1] = to, step

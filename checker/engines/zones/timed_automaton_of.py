@@ -25,13 +25,15 @@ from checker.engines.fast.space import Space
 from checker.engines.fast.table import most_in
 from checker.engines.fast.value_templates import settled
 from checker.engines.timed.exchanged_clocks import ClockExchange
-from checker.engines.zones import location_successors
+from checker.engines.zones import location_successors, location_views
 from checker.engines.zones.clock_images import UNNAMED
 from checker.engines.zones.difference_bounds import NONE
 from checker.engines.zones.learned_images import LearnedImages, tables_of
-from checker.engines.zones.location_successors import (
+from checker.engines.zones.location_views import (
     ANSWER,
     CHOICE,
+    RUNNING,
+    TIMES,
     AutomatonGrowth,
     LearnedClocks,
     LocationView,
@@ -97,9 +99,7 @@ class Network(Space):
 
     ORIGINS = OriginPages  # origins are read in the order of the timed search
 
-    def __init__(
-        self, initial: Configuration, pending: int, exchange: ClockExchange | None = None
-    ) -> None:
+    def __init__(self, initial: Configuration, pending: int, exchange: ClockExchange | None = None) -> None:
         self.initial = initial
         self.exchange = exchange
         self.timing = timing_of(initial)
@@ -224,13 +224,13 @@ class Network(Space):
     def _record(self, answer: ActorClocks) -> list[int]:
         """Record the clocks of an actor; return the ranges of its clocks and its steps."""
         numbers = dict(self.lasting)
-        run = len(self.running) // location_successors.RUNNING
+        run = len(self.running) // RUNNING
         for each in answer.running:
             number = numbers[each.clock] = self.number(each)
             self.running.append(
                 number, each.interval.lo, NONE if each.interval.hi is None else each.interval.hi
             )
-        step = len(self.times) // location_successors.TIMES
+        step = len(self.times) // TIMES
         for done, tests in answer.steps:
             ends = len(self.done), len(self.tested) // TEST
             self.done.append(*(numbers[each] for each in done if each in numbers))
@@ -239,9 +239,9 @@ class Network(Space):
             self.times.append(ends[0], len(self.done), ends[1], len(self.tested) // TEST)
         return [
             run,
-            len(self.running) // location_successors.RUNNING,
+            len(self.running) // RUNNING,
             step,
-            len(self.times) // location_successors.TIMES,
+            len(self.times) // TIMES,
         ]
 
     def number(self, running: RunningClock) -> int:
@@ -261,8 +261,8 @@ class Network(Space):
             self.keys.append((clock, aim))
             self.served.append(clock.sort is Sort.REQUEST)
             family.append(number)
-        if any([self.automaton.compare(each, *compared(clock, interval)) for each in family]):
-            self.outgrown = True
+        for each in family:
+            self.outgrown |= self.automaton.compare(each, *compared(clock, interval))
         return number
 
     def kin(self, clock: ActorClock) -> ActorClock:
@@ -375,7 +375,7 @@ class Network(Space):
     def _view(self) -> LocationView:
         clocks = len(self.clocks_of)
         actors = np.zeros(self.actors, np.int32), np.zeros(self.actors + len(self.restored), np.int32)
-        numbers = np.zeros(location_successors.CLOCKS + 1, np.int64)
+        numbers = np.zeros(location_views.CLOCKS + 1, np.int64)
         return LocationView(
             *actors,
             numbers,

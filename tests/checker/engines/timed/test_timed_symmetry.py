@@ -22,7 +22,9 @@ from semantics.timing.timing import Endurance, Motion
 
 SYMMETRY = (Reduction.SYMMETRY,)
 ENGINES = (Engine.REFERENCE, Engine.FAST)
-ALWAYS = [Property(kind, kind.value) for kind in (*BY_LOOKING, PropertyKind.RACE_FREEDOM, PropertyKind.ENDURANCE)]
+ALWAYS = [
+    Property(kind, kind.value) for kind in (*BY_LOOKING, PropertyKind.RACE_FREEDOM, PropertyKind.ENDURANCE)
+]
 
 
 def there(robot, place="room0"):
@@ -89,7 +91,9 @@ def asked(draw):
 
 
 def decided(c, properties, engine, reduce=(), **more):
-    report = check(c, properties, Limits(configurations=4_000), engine=engine, reduce=reduce, times=True, **more)
+    report = check(
+        c, properties, Limits(configurations=4_000), engine=engine, reduce=reduce, times=True, **more
+    )
     assert_replays(report)
     return report
 
