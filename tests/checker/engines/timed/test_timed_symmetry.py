@@ -110,8 +110,9 @@ def decided(c, properties, engine, reduce=(), **more):
 
 
 def shortest(verdict):
-    """Return the least number of steps before a violation; a loop of representatives may exchange names, and is longer."""
-    return min((each.trace.loop or len(each.trace) for each in verdict.violations), default=None)
+    """Return the least number of steps to a violation, and its kind; where time stops, runs go round differently."""
+    lengths = ((each.kind, 0 if each.trace.loop else len(each.trace)) for each in verdict.violations)
+    return min(lengths, key=lambda each: each[1], default=None)
 
 
 def assert_same_answers(found, right):
