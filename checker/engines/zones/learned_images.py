@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from collections.abc import Hashable, Sequence
+from typing import Protocol
 
 import numpy as np
 
@@ -19,8 +19,22 @@ from semantics.environment import Says
 from semantics.timing.actor_clocks import ActorClock, RunningClock, Sort
 from semantics.timing.intervals import ANY_TIME
 
-if TYPE_CHECKING:
-    from checker.engines.zones.timed_automaton_of import Network
+
+class ClockNumbers(Protocol):
+    """The numbered clocks and windows of a mission.
+
+    Attributes:
+        windows: The clause of each window.
+        keys: The clock of each number, with its aim.
+        restored: For each vehicle with an endurance the numbers of its clocks.
+    """
+
+    windows: list[int]
+    keys: list[tuple[ActorClock, Hashable]]
+    restored: list[tuple[int, int, int]]
+
+    def number(self, running: RunningClock) -> int:
+        """Return the number of a clock, a new one at its first use."""
 
 
 def tables_of(learner: Learner, exchange: ClockExchange) -> Exchanging:
@@ -37,7 +51,7 @@ class LearnedImages:
 
     images: ClockImages
 
-    def __init__(self, network: Network, exchange: ClockExchange) -> None:
+    def __init__(self, network: ClockNumbers, exchange: ClockExchange) -> None:
         self.network = network
         self.exchange = exchange
         self.items = exchange.symmetry.items
