@@ -17,6 +17,7 @@ from checker import Engine, Keeping, Limits, Outcome, RefusedError, check, explo
 from checker.check import BY_LOOKING
 from checker.engines.fast.canonicalise import represent
 from checker.engines.fast.jit_decorators import njit
+from checker.properties.schedule import flights_of
 from checker.reduction import Reduced, Reduction
 from checker.reduction.symmetry import MissionSymmetry
 from semantics.properties.kinds import PropertyKind
@@ -377,3 +378,68 @@ def packed(network, c):
     for word, shift, code in zip(where.word, where.shift, codes, strict=True):
         words[word] |= np.uint64(code) << shift
     return words
+
+
+def test_a_loop_that_exchanges_names_is_unfolded_until_it_closes():
+    goes_round = 'send "go" to SELF loop { react { case "go" => send "go" to SELF } }'
+    none = Interval(0, 0)
+    c = with_timing(mission(goes_round, 2).initial, Timing(TICK, react=none, messages=(("", none),)))
+    for engine in ENGINES:
+        found = explore(c, engine=engine, reduce=Reduced(c, SYMMETRY)).times
+        shown, stop = found.shown.stop(), found.stop()
+        assert len(stop.run.steps) - stop.steps == 2 * (len(shown.run.steps) - shown.steps)
+        decided(c, ALWAYS, engine, SYMMETRY)  # its loop replays
+
+
+def test_flights_of_each_alike_have_the_dates_of_all():
+    c = timed(mission(COMES_BACK, 2, TIMED_CONTROL).initial)
+    right = flights_of(explore(c, engine=Engine.FAST).times)
+    for engine in ENGINES:
+        found = explore(c, engine=engine, reduce=Reduced(c, SYMMETRY)).times
+        assert flights_of(found) == right
+        assert flights_of(found.shown) != right
+
+
+def test_the_path_of_an_exhausted_vehicle_ends_with_its_own_return():
+    c, properties = made("endurance")
+    for engine, reductions in ((Engine.FAST, ()), (Engine.FAST, SYMMETRY), (Engine.REFERENCE, SYMMETRY)):
+        found = decided(c, properties, engine, reductions).verdicts["endurance"]
+        for each in found.violations:
+            assert each.path[-1].label.agent == each.subject.replace("robot", "r")
+
+
+def test_clocks_that_are_exchanged_have_the_same_constants():
+    for name in ("one queue", "messages", "endurance"):
+        c = made(name)[0]
+        network = explore(c, engine=Engine.FAST, reduce=Reduced(c, SYMMETRY)).times.shown.network
+        constants = {}
+        for number, (clock, _) in enumerate(network.keys):
+            constants.setdefault(network.kin(clock), set()).add(network.automaton.constants(number))
+        assert all(len(several) == 1 for several in constants.values())
+        assert len(constants) < len(network.keys)
+
+
+def test_findings_are_told_in_the_names_of_their_traces():
+    rest = "control timed\nenvironment { robot0 vanishes robot1 vanishes robot2 vanishes }"
+    c = timed(mission(LOOKS, 3, rest).initial)
+    told = 0
+    for engine in ENGINES:
+        for verdict in decided(c, ALWAYS, engine, SYMMETRY).verdicts:
+            make = BY_LOOKING.get(verdict.property.kind)
+            for violation in verdict.violations if make is not None else ():
+                assert violation.message in set().union(
+                    *map(messages(make), violation.trace.configurations[-2:])
+                )
+                told += "r1" in violation.message or "r2" in violation.message
+    assert told
+
+
+def messages(make):
+    """Return a function that tells what an inspection finds in a configuration."""
+
+    def found(c):
+        inspection = make(9)
+        inspection(0, c, expand(c))
+        return {each.message for each in inspection.collected.first.values()}
+
+    return found
