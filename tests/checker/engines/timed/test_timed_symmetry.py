@@ -410,11 +410,11 @@ def test_flights_of_each_alike_have_the_dates_of_all():
 
 
 def test_the_path_of_an_exhausted_vehicle_ends_with_its_own_return():
-    c, properties = made("endurance")
-    for engine, reductions in ((Engine.FAST, ()), (Engine.FAST, SYMMETRY), (Engine.REFERENCE, SYMMETRY)):
-        found = decided(c, properties, engine, reductions).verdicts["endurance"]
-        for each in found.violations:
-            assert each.path[-1].label.agent == each.subject.replace("robot", "r")
+    initial = mission(COMES_BACK, 3, TIMED_CONTROL).initial
+    c = timed(initial, endurances=lasting(initial, lasts=2))
+    found = check(c, ALWAYS[-1:], engine=Engine.FAST, reduce=SYMMETRY).verdicts["endurance"]
+    assert [each.path[-1].label.agent for each in found.violations] == ["r0", "r1", "r2"]
+    assert [each.subject for each in found.violations] == ["robot0", "robot1", "robot2"]
 
 
 def test_clocks_that_are_exchanged_have_the_same_constants():
