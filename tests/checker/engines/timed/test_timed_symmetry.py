@@ -331,17 +331,26 @@ def test_endurance_of_each_alike_is_reported_with_a_run_of_its_own():
         assert sorted(each.subject for each in found.violations) == ["robot0", "robot1"]
 
 
-@pytest.mark.parametrize("name", ["one queue", "messages", "see each other"])
+PAIRING = """
+BigActor base hosted_at gcs0 with_behavior {
+  loop { react { case ("here", x) => react { case ("here", y) => send ("two", x) to y } } }
+}"""
+PAIRED = 'send ("here", SELF) to base react { case ("two", z) => skip }'
+TIED = {
+    "one queue": made("one queue")[0],
+    "messages": made("messages")[0],
+    "two pairs": timed(mission(PAIRED, 4, TIMED_CONTROL + PAIRING).initial),
+}
+
+
+@pytest.mark.parametrize("name", TIED)
 def test_both_engines_replace_a_row_by_the_same_exchange(name):
-    """They may be the same representative for more than one exchange; dates are those of one of them."""
-    looking = mission(
-        "observe(CHILDREN(dock0)) react { case o => control(MOVE_HOST_TO room0) }", 4, "control timed"
-    )
-    c = timed(looking.initial) if name == "see each other" else made(name)[0]
+    """Several exchanges may lead to one representative, as with two pairs that are alike; dates are those of one."""
+    c = TIED[name]
     found = explore(c, limits=Limits(configurations=300), engine=Engine.FAST, reduce=Reduced(c, SYMMETRY))
     network, symmetry = found.times.shown.network, found.reducer.symmetry
     members, several = range(len(symmetry.items.members)), 0
-    for one in list(found.configurations)[:60]:
+    for one in list(found.configurations)[:120]:
         for step in expand(one).transitions:
             renaming, place = symmetry.sorting(step.target)[0], place_of(network, step.target)
             assert all(moves(symmetry, renaming, member, place[member]) for member in members)
@@ -401,11 +410,11 @@ def test_flights_of_each_alike_have_the_dates_of_all():
 
 
 def test_the_path_of_an_exhausted_vehicle_ends_with_its_own_return():
-    c, properties = made("endurance")
-    for engine, reductions in ((Engine.FAST, ()), (Engine.FAST, SYMMETRY), (Engine.REFERENCE, SYMMETRY)):
-        found = decided(c, properties, engine, reductions).verdicts["endurance"]
-        for each in found.violations:
-            assert each.path[-1].label.agent == each.subject.replace("robot", "r")
+    initial = mission(COMES_BACK, 3, TIMED_CONTROL).initial
+    c = timed(initial, endurances=lasting(initial, lasts=2))
+    found = check(c, ALWAYS[-1:], engine=Engine.FAST, reduce=SYMMETRY).verdicts["endurance"]
+    assert [each.path[-1].label.agent for each in found.violations] == ["r0", "r1", "r2"]
+    assert [each.subject for each in found.violations] == ["robot0", "robot1", "robot2"]
 
 
 def test_clocks_that_are_exchanged_have_the_same_constants():
