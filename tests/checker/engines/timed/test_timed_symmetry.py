@@ -371,18 +371,18 @@ def represented(x, d, words, columns):
 
 def place_of(network, c):
     """Return the place of each member in the representative, by the compiled loops."""
-    tables, words = network.exchanging, packed(network, c)
-    while not represented(tables.exchanges, tables.desk, words.copy(), network.packing.columns):
+    tables, words = network.model.exchanging, packed(network, c)
+    while not represented(tables.exchanges, tables.desk, words.copy(), network.store.packing.columns):
         tables.learn()
-        network._see()
+        network.model.see()
         words = packed(network, c)
     return tables.desk.place.tolist()
 
 
 def packed(network, c):
     codes = network.learner.columns.codes(c.state)
-    network._see()
-    where = network.packing
+    network.model.see()
+    where = network.store.packing
     words = np.zeros(where.words, np.uint64)
     for word, shift, code in zip(where.word, where.shift, codes, strict=True):
         words[word] |= np.uint64(code) << shift
