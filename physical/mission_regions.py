@@ -7,9 +7,9 @@ of the entity's outermost carrier (or of itself) and on the flights that move it
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
-from physical.drift import NOTHING_ABOARD, Aboard, Places
+from physical.drift import Aboard, Places
 from physical.place_nesting import Place
 from physical.regions import Region
 from physical.shape import Geometry
@@ -22,7 +22,7 @@ class DriftWithin:
     mover: Geometry
     within: Geometry
     places: Places
-    aboard: Aboard = NOTHING_ABOARD
+    aboard: Aboard = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)

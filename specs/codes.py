@@ -506,6 +506,27 @@ class Code(Enum):
         """A mission without bigActors can be shown, and recordings can be replayed in its places, but a verdict on it
         would be empty.""",
     )
+
+    BAD_RANGE = (
+        "LS616",
+        "length out of bounds",
+        """A distance between entities is above 0 m. The greatest distance of a vehicle from its way (`strays`) is at
+        most 100 km, and at least the diameter of the circles that it flies.""",
+    )
+
+    NOT_A_PLACE = (
+        "LS617",
+        "place without an inside",
+        """`possibly x in p` and `surely x in p` ask for a place p: an entity with an area, or one that carries x. Of an
+        entity that is a point ask for a distance: `x at least 50 m from p`, `x within 3 km of p`.""",
+    )
+
+    NOT_UNDER_WAY = (
+        "LS618",
+        "region of control that takes no time",
+        """`possibly`, `surely`, `at least` and `within` are about ways, and with `control atomic` nothing is under way.
+        Write `control timed`.""",
+    )
     # --- LS7: warnings
     NOTHING_QUANTIFIED = (
         "LS701",

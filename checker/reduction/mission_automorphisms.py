@@ -57,6 +57,9 @@ class Automorphisms:
         self._check_program(renaming)
         if frozenset(map(renaming.name, self.c.setting.arriving)) != self.c.setting.arriving:
             raise Unlike("of one flights arrive, of the other not")
+        strays = self.c.setting.strays
+        if any(strays.get(one) != strays.get(other) for one, other in renaming.names.items()):
+            raise Unlike("one strays farther from its way than the other")
         return renaming
 
     # --- kinds and names --------------------------------------------------------------------------------------

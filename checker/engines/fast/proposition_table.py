@@ -36,6 +36,7 @@ from semantics.properties.propositions import (
     is_variable,
     places_around,
 )
+from semantics.properties.region_atoms import ApartFrom, PossiblyIn, SurelyIn, WithinRangeOf, operands
 from semantics.state.configuration import Configuration
 from semantics.state.signature import Name
 
@@ -69,6 +70,8 @@ def subject(atom: Atom) -> Subject:
             return (name,)
         case LinkedWith(name, other):
             return (name, other)
+        case PossiblyIn() | SurelyIn() | ApartFrom() | WithinRangeOf():
+            return operands(atom)
         case _:
             return (str(atom),)
 

@@ -1,0 +1,29 @@
+"""Facts that regions need: all that may ever happen to each entity, from a mission's text."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+
+from physical.mission_regions import EntityMotion, Ways
+from semantics.state.signature import Name
+
+
+@dataclass(frozen=True, eq=False)
+class RegionFacts:
+    """The facts of a mission.
+
+    Attributes:
+        motions: The possible motion of each entity, by name.
+        movers: For each entity the agents whose flights may move it, sorted; none if its placement says enough of them.
+    """
+
+    motions: Mapping[Name, EntityMotion]
+    movers: Mapping[Name, tuple[Name, ...]]
+
+    def __reduce__(self) -> tuple[object, ...]:
+        return RegionFacts, (self.motions, self.movers)
+
+    @cached_property
+    def ways(self) -> Ways:
+        """The regions of the mission's entities."""
+        return Ways(self.motions.values())
