@@ -591,7 +591,8 @@ class Code(Enum):
         "LS709",
         "flight that may cross a forbidden place",
         """An invariant keeps a vehicle out of a place, and the straight way of one of its flights may lead through it.
-        The invariant does not cover a vehicle in transit. Lead the flight around by VIA, or in several moves.""",
+        `actually` does not cover a vehicle in transit: ask for `not possibly uav0 in place0`. Or lead the flight around
+        by VIA, or in several moves.""",
     )
 
     HIDES_AN_ENTITY = (
