@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import pairwise
 
 import shapely
 
-from physical.drift import NOTHING_ABOARD, Aboard, Cell, MetricPlane, Places, face_at, plane_of, quotient
+from physical.drift import Aboard, Cell, MetricPlane, Places, face_at, plane_of, quotient
 from physical.frame import PositionE7, normal_longitude
 from physical.geometry_measures import centroid
 from physical.placement import Offset, outline, still
@@ -30,7 +30,7 @@ class DriftWithin:
     mover: Geometry
     within: Geometry
     places: Places
-    aboard: Aboard = NOTHING_ABOARD
+    aboard: Aboard = field(default_factory=dict)
 
 
 def face_of(drift: DriftWithin, at: Geometry) -> int | None:

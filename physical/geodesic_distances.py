@@ -39,7 +39,7 @@ Positions = Any
 """An array with rows of longitude and latitude in degrees."""
 
 
-class Line(NamedTuple):
+class GeodesicLine(NamedTuple):
     """The shortest line between two points: its metres, and its ends (longitude, latitude)."""
 
     metres: float
@@ -61,7 +61,7 @@ def shared_frame(a: Disc, b: Disc) -> tuple[GnomonicFrame, float]:
 
 
 @lru_cache(maxsize=MEMO)
-def nearest_line(a: GeodesicArea, b: GeodesicArea) -> Line:
+def nearest_line(a: GeodesicArea, b: GeodesicArea) -> GeodesicLine:
     """Return the shortest line between two areas, of 0 metres if they meet."""
     if a.shape.geom_type == b.shape.geom_type == "Point":
         return _line(_ends(a.shape, b.shape))
@@ -70,34 +70,36 @@ def nearest_line(a: GeodesicArea, b: GeodesicArea) -> Line:
     if shapely.intersects(one, other):
         meeting = shapely.intersection(one, other).representative_point()
         spot = tuple(frame.positions(shapely.get_coordinates(meeting))[0].tolist())
-        return Line(0.0, spot, spot)
+        return GeodesicLine(0.0, spot, spot)
     found = _line(frame.positions(shapely.get_coordinates(shapely.shortest_line(one, other))))
     longest = found.metres * stretch(reach)
     if longest - found.metres <= PRECISION:
         return found
     there = _measured_pairs(one, other, frame, longest)
     back = _measured_pairs(other, one, frame, longest)
-    return min([found, *there, *(Line(each.metres, each.second, each.first) for each in back)])
+    return min([found, *there, *(GeodesicLine(each.metres, each.second, each.first) for each in back)])
 
 
 def _ends(a: shapely.Point, b: shapely.Point) -> Positions:
     return np.array([[a.x, a.y], [b.x, b.y]])
 
 
-def _line(ends: Positions) -> Line:
+def _line(ends: Positions) -> GeodesicLine:
     (east, north), (to_east, to_north) = ends.tolist()
-    return Line(float(geod().inv(east, north, to_east, to_north)[2]), (east, north), (to_east, to_north))
+    return GeodesicLine(
+        float(geod().inv(east, north, to_east, to_north)[2]), (east, north), (to_east, to_north)
+    )
 
 
 def _measured_pairs(
     one: shapely.Geometry, other: shapely.Geometry, frame: GnomonicFrame, longest: float
-) -> list[Line]:
+) -> list[GeodesicLine]:
     """Return the shortest line from a vertex of one shape to an edge of another; none over `longest` in the frame."""
     spots, (starts, ends) = _vertices(one), _edges(other)
     spots = spots[shapely.dwithin(shapely.points(spots), other, longest)]
     near = shapely.dwithin(shapely.linestrings(np.stack([starts, ends], axis=1)), one, longest)
     starts, ends = starts[near], ends[near]
-    best: list[Line] = []
+    best: list[GeodesicLine] = []
     rows = max(1, MOST_PAIRS // max(1, len(starts)))
     for at in range(0, len(spots), rows):
         part = spots[at : at + rows]
@@ -107,7 +109,9 @@ def _measured_pairs(
             metres, feet = _perpendiculars(frame, part[which], starts[edge], ends[edge], shares[which, edge])
             least = int(metres.argmin())
             vertex = frame.positions(part[which[least]][None])[0]
-            best.append(Line(float(metres[least]), tuple(vertex.tolist()), tuple(feet[least].tolist())))
+            best.append(
+                GeodesicLine(float(metres[least]), tuple(vertex.tolist()), tuple(feet[least].tolist()))
+            )
     return best
 
 

@@ -19,7 +19,7 @@ from physical.gnomonic import RegionError
 from physical.place_nesting import Place
 from physical.possible_geometries import PossibleGeometries
 from physical.regions import NOWHERE, Located, Region, RegionKind, RegionPart, Source
-from physical.resting_regions import Patch, RestingPlaces
+from physical.resting_regions import GroundPatch, RestingPlaces
 from physical.shape import Geometry
 
 Result = TypeVar("Result")
@@ -142,18 +142,18 @@ class Ways:
             legs = list(zip(pairwise(points), pairwise(names), strict=True))
             return [_leg([*here, *there], margin, altitude, ends) for (here, there), ends in legs]
         wholes = [self._of.whole(name) for name in steps or [entity]]
-        ends = [Patch(whole.sources, True, whole.margin) for whole in wholes if whole is not None]
+        ends = [GroundPatch(whole.sources, True, whole.margin) for whole in wholes if whole is not None]
         if any(len(plan) > 1 for plan in plans) or not steps:
             ends = [replace(each, margin=each.margin + self._of.radius(entity)) for each in ends]
         return [_leg([*begin, *ends], margin, altitude, (ORIGIN, *steps))]
 
-    def _begin(self, entity: str, origin: Place) -> tuple[list[Patch], float]:
+    def _begin(self, entity: str, origin: Place) -> tuple[list[GroundPatch], float]:
         """Return where a flight begins, and the metres r by which its legs are grown."""
         if self._is_certain(entity, origin):
-            return [Patch((origin.geometry,))], self._of.motion(entity).margin
+            return [GroundPatch((origin.geometry,))], self._of.motion(entity).margin
         faces = self._resting.face(entity, origin.geometry)
         if faces:
-            return [Patch((face,)) for face in faces], self._of.motion(entity).margin
+            return [GroundPatch((face,)) for face in faces], self._of.motion(entity).margin
         return list(self._resting.stay(entity, origin)), self._resting.margin(entity, origin.geometry)
 
     def _carriers_in(self, entity: str, at: Transit, flights: Iterable[FlightPlan]) -> frozenset[str]:
@@ -162,20 +162,22 @@ class Ways:
         ends = {at.to, *(name for flight in flights for name in (flight.to, flight.start))}
         return frozenset(ends & carriers)
 
-    def _stop(self, entity: str, origin: Place, place: str, is_last: bool) -> Patch:
+    def _stop(self, entity: str, origin: Place, place: str, is_last: bool) -> GroundPatch:
         """Return where an entity flies to on its way: a point if `run` always sends it there, else the whole place."""
         radius = 0.0 if is_last else self._of.radius(entity)
         whole = self._of.whole(place)
         assert whole is not None  # a steady place
         if self._of.motion(entity).strays is None:
-            return Patch(whole.sources, True, radius)
+            return GroundPatch(whole.sources, True, radius)
         if not is_last:
-            return Patch((waypoint(self._of.geometry(place)),), margin=radius)
+            return GroundPatch((waypoint(self._of.geometry(place)),), margin=radius)
         spot = self._of.destination(entity, origin.geometry, place)
-        return Patch(whole.sources if spot is None else (spot,), True)
+        return GroundPatch(whole.sources if spot is None else (spot,), True)
 
 
-def _leg(patches: Sequence[Patch], margin: float, altitude: Band | None, ends: tuple[str, ...]) -> RegionPart:
+def _leg(
+    patches: Sequence[GroundPatch], margin: float, altitude: Band | None, ends: tuple[str, ...]
+) -> RegionPart:
     """Return the hull of patches, grown by the margin and by the greatest of theirs."""
     sources: set[Source] = {source for each in patches for source in each.sources}
     grown = margin + max(each.margin for each in patches)

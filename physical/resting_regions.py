@@ -30,7 +30,7 @@ LEAVING: Final = 0.5
 
 
 @dataclass(frozen=True, slots=True)
-class Patch:
+class GroundPatch:
     """A piece of ground: a source or a hull of several, grown by what its entities may stray."""
 
     sources: tuple[Source, ...]
@@ -58,7 +58,7 @@ class RestingPlaces:
             self._covers[entity] = () if drift is None else face_covers(drift)
         return self._covers[entity]
 
-    def stay(self, entity: str, at: Place) -> tuple[Patch, ...]:
+    def stay(self, entity: str, at: Place) -> tuple[GroundPatch, ...]:
         """Return Stay(g) without the margin r: the pieces of the entity and of all that may have brought it to g."""
         found = dict.fromkeys(self._own(entity, at))
         for carrier in self._of.bringers(entity, at.geometry):
@@ -69,36 +69,38 @@ class RestingPlaces:
         """Return the greatest r of an entity and of all that may have brought it to a placement."""
         return max(self._of.motion(name).margin for name in (entity, *self._of.bringers(entity, at)))
 
-    def _own(self, entity: str, at: Place) -> Iterator[Patch]:
+    def _own(self, entity: str, at: Place) -> Iterator[GroundPatch]:
         motion = self._of.motion(entity)
         if motion.strays is not None or not motion.targets:
-            yield Patch((at.geometry,))
+            yield GroundPatch((at.geometry,))
         else:
             yield from self._flown_to(motion, at.geometry, (at.altitude,))
 
-    def _brought(self, carrier: str, at: Geometry, radius: float) -> Iterator[Patch]:
+    def _brought(self, carrier: str, at: Geometry, radius: float) -> Iterator[GroundPatch]:
         """Yield where a carrier may be that put an entity of some radius down at a placement."""
         motion, middle = self._of.motion(carrier), centroid(at)
         face = None if motion.drift is None else standing_for(motion.drift, middle)
         for cover in () if face is None else self._faces(carrier)[face]:
-            yield Patch((cover,), margin=radius, kind=RegionKind.FACE)
+            yield GroundPatch((cover,), margin=radius, kind=RegionKind.FACE)
         if motion.strays is not None or not motion.targets:
-            yield Patch((at,))
+            yield GroundPatch((at,))
             return
         for each in self._flown_to(motion, middle, self._of.bands(carrier)):
             yield replace(each, margin=each.margin + radius)
 
-    def _flown_to(self, motion: EntityMotion, at: Geometry, bands: Iterable[Band | None]) -> Iterator[Patch]:
+    def _flown_to(
+        self, motion: EntityMotion, at: Geometry, bands: Iterable[Band | None]
+    ) -> Iterator[GroundPatch]:
         """Yield where an entity may be that flew to a placement, and may still be on its way to the waypoint."""
         around = [place for band in bands for place in self._smallest(motion, at, band)]
         if not around:
-            yield Patch((at,))
+            yield GroundPatch((at,))
         for place in sorted(set(around)):
-            yield Patch((place,), spanned=not is_star(place, at))
+            yield GroundPatch((place,), spanned=not is_star(place, at))
         for name in sorted(motion.targets - {motion.name}):
             whole = self._of.whole(name)
             if whole is not None and not self._of.is_fixed(name) and self._of.is_near(name, centroid(at)):
-                yield Patch(whole.sources, True, whole.margin)
+                yield GroundPatch(whole.sources, True, whole.margin)
 
     def _smallest(self, motion: EntityMotion, at: Geometry, band: Band | None) -> Iterator[Geometry]:
         """Yield the smallest fixed place around a placement that is always there, or else the largest one.
