@@ -6,114 +6,69 @@ of the entity's outermost carrier (or of itself) and on the flights that move it
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import replace
+from itertools import pairwise
+from typing import Final, TypeVar
 
-from physical.drift import Aboard, Places
+from physical.altitude import Band
+from physical.entity_motions import CarriedBy, EntityMotion, FlightPlan, Standpoint, Transit
+from physical.geodesic_areas import disc_of
+from physical.geometry_measures import waypoint
+from physical.gnomonic import RegionError
 from physical.place_nesting import Place
-from physical.regions import Region
+from physical.possible_geometries import PossibleGeometries
+from physical.regions import NOWHERE, Located, Region, RegionKind, RegionPart, Source
+from physical.resting_regions import GroundPatch, RestingPlaces
 from physical.shape import Geometry
 
+Result = TypeVar("Result")
 
-@dataclass(frozen=True, slots=True)
-class DriftWithin:
-    """The arguments of `physical.drift_faces` for an entity that drifts within a place."""
-
-    mover: Geometry
-    within: Geometry
-    places: Places
-    aboard: Aboard = field(default_factory=dict)
-
-
-@dataclass(frozen=True, slots=True)
-class EntityMotion:
-    """All that a mission's text says about the possible positions of one entity.
-
-    Attributes:
-        name: The entity.
-        placements: Each geometry with its altitudes that the mission or a clause gives it: its first placement, those
-            of `drifts among` and `appears`. The faces of a drift within a place are not listed.
-        loads: Its shapes and altitudes where the mission puts it aboard a carrier; their positions have no meaning.
-        targets: The places and carriers to which a control may send it; any that fits, where the text names none.
-        via: The places by which a control may send it.
-        carriers: The entities that may carry it: at first, by a clause or by a control.
-        containers: The places whose kinds may contain its kind.
-        may_be_absent: Whether it may be absent from P: at first, or since it vanishes.
-        strays: The metres of `strays at most`; None if the mission does not say it.
-        circle: The diameter in metres of its circle, 0 if it hovers or this is unknown.
-        drift: Its drift within a place, if it has one.
-    """
-
-    name: str
-    placements: tuple[Place, ...] = ()
-    loads: tuple[Place, ...] = ()
-    targets: frozenset[str] = frozenset()
-    via: frozenset[str] = frozenset()
-    carriers: frozenset[str] = frozenset()
-    containers: frozenset[str] = frozenset()
-    may_be_absent: bool = False
-    strays: float | None = None
-    circle: float = 0.0
-    drift: DriftWithin | None = None
-
-
-@dataclass(frozen=True, slots=True)
-class Transit:
-    """A placement in transit: P's origin and destination."""
-
-    origin: Place
-    to: str
-
-
-@dataclass(frozen=True, slots=True)
-class CarriedBy:
-    """A placement aboard another entity."""
-
-    carrier: str
-
-
-Standpoint = Place | Transit | CarriedBy | None
-"""The placement of an entity in P; None if it is absent."""
-
-
-@dataclass(frozen=True, slots=True)
-class FlightPlan:
-    """A FLY that moves an entity.
-
-    Attributes:
-        to: Its destination.
-        via: The places of its VIA, in order.
-        start: The parent that it leaves, as m(R) has it; a carrier's altitudes then belong to the flight's.
-    """
-
-    to: str
-    via: tuple[str, ...] = ()
-    start: str = ""
-
-
-@dataclass(frozen=True, slots=True)
-class Located:
-    """An entity in a configuration: its region, and its carriers, the innermost first."""
-
-    entity: str
-    region: Region
-    carriers: tuple[str, ...] = ()
-
-    @property
-    def bearer(self) -> str:
-        """Return the outermost carrier, or the entity itself if nothing carries it."""
-        return self.carriers[-1] if self.carriers else self.entity
+ORIGIN: Final = ""
+"""The name, among the ends of a leg, of the position at which the flight began."""
 
 
 class Ways:
     """The regions of a mission's entities; immutable, and its answers are cached."""
 
     def __init__(self, motions: Iterable[EntityMotion]) -> None:
-        raise NotImplementedError
+        self._of: Final = PossibleGeometries(motions)
+        self._resting: Final = RestingPlaces(self._of)
+        self._known: Final[dict[tuple[str, Place | Transit, frozenset[FlightPlan]], Region]] = {}
 
     def is_fixed(self, entity: str) -> bool:
-        """Whether an entity has one geometry in all configurations (W of ways.md has one element)."""
-        raise NotImplementedError
+        """Whether an entity has one geometry in all configurations in which it is present."""
+        return self._of.is_fixed(entity)
+
+    def check(self, entity: str) -> None:
+        """Raise RegionError if some region of an entity may be too large, or may cover a pole."""
+        whole = self._of.whole(entity)
+        if whole is not None:
+            _named(entity, lambda: disc_of(whole))
+
+    def located(
+        self,
+        entity: str,
+        placement_of: Callable[[str], Standpoint],
+        flights_of: Callable[[str], frozenset[FlightPlan]],
+    ) -> Located:
+        """Return an entity with its region; reads the placements of it and its carriers, and the bearer's flights."""
+        carriers: list[str] = []
+        at = placement_of(entity)
+        while isinstance(at, CarriedBy) and at.carrier not in carriers:
+            carriers.append(at.carrier)
+            at = placement_of(at.carrier)
+        bearer = carriers[-1] if carriers else entity
+        if at is None or isinstance(at, CarriedBy):
+            return Located(entity, NOWHERE, tuple(carriers))
+        region = self.region(bearer, at, flights_of(bearer) if isinstance(at, Transit) else frozenset())
+        if carriers:
+            region = replace(region, certain=False, is_area=self.is_area(entity))
+        return Located(entity, region, tuple(carriers))
+
+    def is_area(self, entity: str) -> bool:
+        """Whether an entity has an area of its own."""
+        return any(not form.geometry.is_point for form in self._of.motion(entity).forms)
 
     def region(
         self, entity: str, at: Place | Transit | None, flights: frozenset[FlightPlan] = frozenset()
@@ -123,17 +78,121 @@ class Ways:
         Raises:
             RegionError: If it reaches over 1,000 km from its middle, or covers a pole.
         """
-        raise NotImplementedError
+        if at is None:
+            return NOWHERE
+        key = (entity, at, flights)
+        if key not in self._known:
+            self._known[key] = _named(entity, lambda: self._region(entity, at, flights))
+        return self._known[key]
 
-    def located(
-        self,
-        entity: str,
-        placement_of: Callable[[str], Standpoint],
-        flights_of: Callable[[str], frozenset[FlightPlan]],
-    ) -> Located:
-        """Return an entity with its region; reads the placements of it and its carriers, and the bearer's flights."""
-        raise NotImplementedError
+    def _region(self, entity: str, at: Place | Transit, flights: frozenset[FlightPlan]) -> Region:
+        is_area = self.is_area(entity)
+        if isinstance(at, Transit):
+            parts = self._in_transit(entity, at, tuple(sorted(flights)))
+        elif self._is_certain(entity, at):
+            return Region((RegionPart((at.geometry,), altitude=at.altitude),), certain=True, is_area=is_area)
+        else:
+            parts = self._at_rest(entity, at)
+        for part in parts:
+            if part.spanned or part.margin > 0.0:
+                disc_of(part)  # refuse it here
+        return Region(tuple(dict.fromkeys(parts)), is_area=is_area)
 
-    def check(self) -> None:
-        """Raise RegionError if some possible region of the mission is too large, or covers a pole."""
-        raise NotImplementedError
+    # --- at rest --------------------------------------------------------------------------------------
+
+    def _is_certain(self, entity: str, at: Place) -> bool:
+        motion = self._of.motion(entity)
+        if motion.drift is not None and self._resting.face(entity, at.geometry):
+            return False
+        if not motion.targets and not motion.carriers:
+            return True
+        given = any(place.geometry is at.geometry for place in motion.placements)
+        return given and not self._of.may_come_to(entity, at.geometry)
+
+    def _at_rest(self, entity: str, at: Place) -> list[RegionPart]:
+        faces = self._resting.face(entity, at.geometry)
+        if faces:
+            return [RegionPart((face,), altitude=at.altitude, kind=RegionKind.FACE) for face in faces]
+        margin = self._resting.margin(entity, at.geometry)
+        altitude = self._altitude(at, self._of.bringers(entity, at.geometry))
+        return [
+            RegionPart(each.sources, each.spanned, each.margin + margin, altitude, each.kind)
+            for each in self._resting.stay(entity, at)
+        ]
+
+    def _altitude(self, at: Place, carriers: Iterable[str]) -> Band | None:
+        """Return the altitudes from the lowest to the highest of an entity and carriers; all if one has no band."""
+        bands = [at.altitude, *(band for name in carriers for band in self._of.bands(name))]
+        known = [band for band in bands if band is not None]
+        if len(known) < len(bands):
+            return None
+        return Band(min(band.low for band in known), max(band.high for band in known))
+
+    # --- in transit -----------------------------------------------------------------------------------
+
+    def _in_transit(self, entity: str, at: Transit, flights: Sequence[FlightPlan]) -> list[RegionPart]:
+        begin, margin = self._begin(entity, at.origin)
+        altitude = self._altitude(at.origin, sorted(self._carriers_in(entity, at, flights)))
+        plans = [(*flight.via, flight.to) for flight in flights]
+        steps = sorted({name for plan in plans for name in plan})
+        if len(plans) == 1 and all(map(self._of.is_steady, steps)):
+            stops = [self._stop(entity, at.origin, name, name == plans[0][-1]) for name in plans[0]]
+            points = [begin, *([stop] for stop in stops)]
+            names = [ORIGIN, *plans[0]]
+            legs = list(zip(pairwise(points), pairwise(names), strict=True))
+            return [_leg([*here, *there], margin, altitude, ends) for (here, there), ends in legs]
+        wholes = [self._of.whole(name) for name in steps or [entity]]
+        ends = [GroundPatch(whole.sources, True, whole.margin) for whole in wholes if whole is not None]
+        if any(len(plan) > 1 for plan in plans) or not steps:
+            ends = [replace(each, margin=each.margin + self._of.radius(entity)) for each in ends]
+        return [_leg([*begin, *ends], margin, altitude, (ORIGIN, *steps))]
+
+    def _begin(self, entity: str, origin: Place) -> tuple[list[GroundPatch], float]:
+        """Return where a flight begins, and the metres r by which its legs are grown."""
+        if self._is_certain(entity, origin):
+            return [GroundPatch((origin.geometry,))], self._of.motion(entity).margin
+        faces = self._resting.face(entity, origin.geometry)
+        if faces:
+            return [GroundPatch((face,)) for face in faces], self._of.motion(entity).margin
+        return list(self._resting.stay(entity, origin)), self._resting.margin(entity, origin.geometry)
+
+    def _carriers_in(self, entity: str, at: Transit, flights: Iterable[FlightPlan]) -> frozenset[str]:
+        """Return the carriers that an entity leaves or boards by its flights."""
+        carriers = self._of.motion(entity).carriers
+        ends = {at.to, *(name for flight in flights for name in (flight.to, flight.start))}
+        return frozenset(ends & carriers)
+
+    def _stop(self, entity: str, origin: Place, place: str, is_last: bool) -> GroundPatch:
+        """Return where an entity flies to on its way: a point if `run` always sends it there, else the whole place."""
+        radius = 0.0 if is_last else self._of.radius(entity)
+        whole = self._of.whole(place)
+        assert whole is not None  # a steady place
+        if self._of.motion(entity).strays is None:
+            return GroundPatch(whole.sources, True, radius)
+        if not is_last:
+            return GroundPatch((waypoint(self._of.geometry(place)),), margin=radius)
+        spot = self._of.destination(entity, origin.geometry, place)
+        return GroundPatch(whole.sources if spot is None else (spot,), True)
+
+
+def _leg(
+    patches: Sequence[GroundPatch], margin: float, altitude: Band | None, ends: tuple[str, ...]
+) -> RegionPart:
+    """Return the hull of patches, grown by the margin and by the greatest of theirs."""
+    sources: set[Source] = {source for each in patches for source in each.sources}
+    grown = margin + max(each.margin for each in patches)
+    return RegionPart(tuple(sorted(sources, key=_order)), True, grown, altitude, RegionKind.LEG, ends)
+
+
+def _order(source: Source) -> tuple[object, ...]:
+    return (0, source.order()) if isinstance(source, Geometry) else (1, source.shell)
+
+
+def _named(entity: str, compute: Callable[[], Result]) -> Result:
+    """Return a result; an error names the entity."""
+    try:
+        return compute()
+    except RegionError as error:
+        raise RegionError(
+            error.code, error.message, error.hint, error.where or f"the way of {entity}"
+        ) from error

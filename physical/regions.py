@@ -98,3 +98,17 @@ class Region:
 
 NOWHERE = Region()
 """The region of an absent entity."""
+
+
+@dataclass(frozen=True, slots=True)
+class Located:
+    """An entity in a configuration: its region, and its carriers, the innermost first."""
+
+    entity: str
+    region: Region
+    carriers: tuple[str, ...] = ()
+
+    @property
+    def bearer(self) -> str:
+        """Return the outermost carrier, or the entity itself if nothing carries it."""
+        return self.carriers[-1] if self.carriers else self.entity
