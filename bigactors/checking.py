@@ -32,6 +32,7 @@ from checker import (
 )
 from checker.engines.contract import TickError
 from checker.properties.findings import MOST_VIOLATIONS
+from physical import RegionError
 from semantics.state.canonical import digest
 from specs.elaboration import ElaboratedMission, Variation
 
@@ -153,9 +154,11 @@ def check_mission(
         mistake = Mistake(str(refused) or "there is not enough memory", hint, name)
         tell(str(mistake))
         return FailedMission(name, code, mistake.message, mistake.details)
+    except RegionError as error:
+        what = f"{error.where}: {error.message}" if error.where else error.message
+        return _failed(name, Mistake(f"a property asks for a region, and {what}", error.hint, name))
     except Mistake as mistake:
-        tell(str(mistake))
-        return FailedMission(name, Exit.MISTAKE, mistake.message, mistake.details)
+        return _failed(name, mistake)
     except KeyboardInterrupt:
         message = "interrupted: nothing is decided of it"
         tell(f"{name}: {message}")
@@ -163,6 +166,11 @@ def check_mission(
     except Exception as error:  # any other exception is our bug; the remaining missions are still checked
         tell(f"{name}:\n{describe_bug(error)}")
         return FailedMission(name, Exit.BUG, f"internal error: {type(error).__name__}: {error}")
+
+
+def _failed(name: str, mistake: Mistake) -> FailedMission:
+    tell(str(mistake))
+    return FailedMission(name, Exit.MISTAKE, mistake.message, mistake.details)
 
 
 def _check_times(name: str, mission: ElaboratedMission, report: Report) -> None:

@@ -16,7 +16,7 @@ from semantics.state.physical_model import (
 from semantics.state.signature import Name
 
 if TYPE_CHECKING:
-    from physical.mission_regions import DriftWithin
+    from physical import DriftWithin
 
 Effect = tuple[str, Changes]
 """A description of an event, and its writes to P."""

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Mapping
 
-from physical.mission_regions import EntityMotion
+from physical import EntityMotion
 from physical.place_nesting import Place
 from semantics.environment import Appears, Drifts, Vanishes
 from semantics.regions.possible_moves import PossibleMove, possible_moves

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
-from physical.mission_regions import EntityMotion, Ways
+from physical import EntityMotion, Ways
 from semantics.state.signature import Name
 
 

@@ -2,8 +2,7 @@
 
 from collections.abc import Iterator
 
-from physical import Geometry
-from physical.region_relations import nearest, possible_point
+from physical import Geometry, Nearest, centroid, nearest, possible_point
 from semantics.properties.propositions import And, Instances, Not, Or, Proposition, holds
 from semantics.properties.region_atoms import (
     ApartFrom,
@@ -13,7 +12,7 @@ from semantics.properties.region_atoms import (
     WithinRangeOf,
     operands,
 )
-from semantics.regions.region_truth import flights, located
+from semantics.regions.region_truth import facts_of, flights, located
 from semantics.state.configuration import Configuration
 from semantics.state.physical_model import Carried, InTransit, Placed, encloses
 from semantics.state.signature import REGION, Name
@@ -61,23 +60,38 @@ def _figure(atom: RegionAtom, c: Configuration) -> str:
         case SurelyIn():
             return f"{one} may be outside {other}"
         case WithinRangeOf(distance=distance):
-            return f"{one} may be farther than {distance:g} m from {other}"
+            return f"{one} may be farther than {_length(distance)} from {other}"
         case ApartFrom():
-            found = nearest(located(c, one), located(c, other))
+            found = _nearest(atom, c)
             if found is None:
                 return f"{one} and {other} are at one place"
-            near = f"{one} may come within {int(found.metres)} m of {other}"
+            meets = found.metres < 1 and not found.gap
+            near = (
+                f"{one} may meet {other}"
+                if meets
+                else f"{one} may come within {int(found.metres)} m of {other}"
+            )
             return f"{near}, {found.gap:g} m above or below" if found.gap else near
 
 
 def _points(atom: RegionAtom, c: Configuration) -> str:
     """Return the points that show it, as latitude and longitude."""
-    one, other = (located(c, name) for name in operands(atom))
     if isinstance(atom, ApartFrom):
-        found = nearest(one, other)
+        found = _nearest(atom, c)
         return "" if found is None else f"; nearest at {_spot(found.first)} and {_spot(found.second)}"
+    one, other = (located(c, name) for name in operands(atom))
     point = possible_point(one, other) if isinstance(atom, PossiblyIn) else None
     return "" if point is None else f"; such as at {_spot(point)}"
+
+
+def _length(metres: float) -> str:
+    return f"{metres / 1000:g} km" if metres >= 1000 else f"{metres:g} m"
+
+
+def _nearest(atom: ApartFrom, c: Configuration) -> Nearest | None:
+    """Return the nearest points that count: those of parts whose altitudes are not apart."""
+    up = atom.distance if atom.height is None else atom.height
+    return nearest(located(c, atom.entity), located(c, atom.other), up)
 
 
 def _spot(point: Geometry) -> str:
@@ -86,8 +100,9 @@ def _spot(point: Geometry) -> str:
 
 
 def _whereabouts(atom: RegionAtom, c: Configuration) -> str:
-    one, other = operands(atom)
-    return f"{_where(c, one)}, {_where(c, other)}" if one != other else _where(c, one)
+    if isinstance(atom, PossiblyIn | SurelyIn) and facts_of(c).ways.is_fixed(atom.place):
+        return _where(c, atom.entity)
+    return ", ".join(_where(c, name) for name in dict.fromkeys(operands(atom)))
 
 
 def _where(c: Configuration, entity: Name) -> str:
@@ -103,9 +118,9 @@ def _where(c: Configuration, entity: Name) -> str:
             via = sorted({plan.via for plan in flights(c, entity)} - {()})
             by = f" by {', '.join(via[0])}" if via else ""
             return f"{entity} between {start or 'its start'} and {to}{by}"
-        case Placed():
+        case Placed(geometry):
             parent = physical.abstract_parent(entity)
-            return f"{entity} in {parent}" if parent != REGION else f"{entity} in no place"
+            return f"{entity} at {_spot(centroid(geometry))}" if parent == REGION else f"{entity} in {parent}"
 
 
 def _around(c: Configuration, entity: Name, at: Placed) -> Name:

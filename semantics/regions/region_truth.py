@@ -1,8 +1,7 @@
 """The truth of atoms about regions, and the figures that a report shows."""
 
-from physical.mission_regions import CarriedBy, FlightPlan, Located, Standpoint, Transit
-from physical.place_nesting import Place
-from physical.region_relations import at_least, possibly_in, surely_in, within
+from physical import CarriedBy, FlightPlan, Located, Place, Transit, at_least, possibly_in, surely_in, within
+from physical.entity_motions import Standpoint
 from semantics.behaviours.reaction_rules import moved
 from semantics.properties.region_atoms import (
     ApartFrom,

@@ -6,8 +6,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Final
 
-from physical import Geometry, PhysicalError, band_contains, drift_faces, face_at
-from physical.mission_regions import DriftWithin
+from physical import DriftWithin, Geometry, PhysicalError, band_contains, drift_faces, face_at
 from physical.placement import still
 from semantics.environment import Drifts
 from semantics.state.physical_model import Carried, Placed
