@@ -118,6 +118,7 @@ class How:
     cluster: Cluster | None = None
     threads: int | None = None
     times: bool = False
+    ways: bool = False
 
 
 def check_mission(
@@ -142,6 +143,7 @@ def check_mission(
                 cluster=how.cluster,
                 threads=how.threads,
                 times=how.times,
+                ways=how.ways,
             )
         if how.times:
             _check_times(name, mission, report)

@@ -12,6 +12,7 @@ from checker.engines.contract import Cluster, Engine, Exploration, Keeping, Opti
 from checker.limits import BoundMet, CheckPart, Limits, Stop, bounded
 from checker.properties.coverage import coverage
 from checker.properties.findings import MOST_VIOLATIONS, Collected
+from checker.properties.flown_stances import FlownStances
 from checker.properties.inspections import (
     Arrival,
     Computation,
@@ -29,11 +30,13 @@ from checker.reduction.refusals import Reduction, RefusedError
 from checker.traces import Trace, trace_of, trace_to
 from checker.verdicts import Outcome, Report, Verdict, Verdicts, Violation
 from semantics.properties.kinds import PropertyKind
-from semantics.properties.property import Property, watching
+from semantics.properties.property import Property, region_atoms, watching
 from semantics.races.monitor import monitored
 from semantics.state.configuration import Configuration
+from semantics.state.setting import Control
 
 if TYPE_CHECKING:
+    from checker.properties.corridors import Corridors
     from checker.properties.deadlines import Deadlines
     from checker.properties.schedule import Schedule
     from checker.properties.temporal.decide import TemporalDecider
@@ -84,6 +87,7 @@ def check(  # noqa: PLR0913 - independent options
     cluster: Cluster | None = None,
     threads: int | None = None,
     times: bool = False,
+    ways: bool = False,
 ) -> Report:
     """Explore the reachable configurations and decide the properties.
 
@@ -103,6 +107,7 @@ def check(  # noqa: PLR0913 - independent options
         cluster: The workers of the engine Ray.
         threads: The most threads of the fast explorer; by default one for each core.
         times: Whether the report says when flights may begin and end, for a mission with `timing`.
+        ways: Whether the report lists the ways of all flights, with their lengths and distances.
 
     Raises:
         CombinationError: Two options do not work together, or one with the mission (`checker.engines.capabilities`).
@@ -111,10 +116,13 @@ def check(  # noqa: PLR0913 - independent options
         TypeError: A configuration is given without properties.
     """
     initial, asked, notes = _asked(start, properties, notes)
-    initial, limits = watching(initial, asked), limits or Limits()
+    initial, limits = watching(initial, asked, ways=ways), limits or Limits()
     formulas, reductions = [each.formula for each in asked if each.kind.has_proposition], tuple(reduce)
     timing = initial.setting.timing is not None
-    wanted = features(limits, keeping, reductions, cluster=cluster, threads=threads, timing=timing)
+    atomic = initial.setting.control is Control.ATOMIC
+    wanted = features(
+        limits, keeping, reductions, cluster=cluster, threads=threads, timing=timing, ways=ways, atomic=atomic
+    )
     able = engines(wanted, engine)
     runs = [each for each in asked if each.is_of_runs]
     reducer = _reduced(initial, reductions, formulas, runs) if reductions else None
@@ -123,7 +131,7 @@ def check(  # noqa: PLR0913 - independent options
 
     def run(engine: Engine, exploring: Limits) -> Report:
         exploration = replace(options, engine=engine, limits=exploring)
-        found = _Check(initial, asked, exploration, violations, times=times)
+        found = _Check(initial, asked, exploration, violations, times=times, ways=ways)
         return found.run(notes, limits)
 
     impatient = limits.seconds is None or limits.seconds > PATIENCE
@@ -181,9 +189,11 @@ class _Check:
         most: int,
         *,
         times: bool = False,
+        ways: bool = False,
     ) -> None:
         self.initial = initial
         self.times = times
+        self.flown = FlownStances(initial, region_atoms(properties)) if ways else None
         self.properties = properties
         self.options = options
         self.most = most
@@ -212,7 +222,8 @@ class _Check:
     def run(self, notes: tuple[str, ...], whole: Limits) -> Report:
         """Explore, and decide the properties within the limits of the whole check."""
         races = (self.races,) if self.searching else ()
-        everything = (self.visited, *self.inspections.values(), *races, *self.formulas.values())
+        flown = () if self.flown is None else (self.flown,)
+        everything = (self.visited, *self.inspections.values(), *races, *self.formulas.values(), *flown)
         options = self.options
         self.found = explore_by(self.initial, everything, replace(options, edges=bool(self.temporal)))
         if self.found.times is not None and self.initial.setting.timing is not None:
@@ -226,6 +237,7 @@ class _Check:
         with bounded(replace(whole, spent=options.limits.spent + seconds - self.compiling())):
             verdicts = Verdicts(map(self.decide, self.properties))
             schedule = self.schedule()
+            corridors = self.corridors()
         return Report(
             verdicts=verdicts,
             configurations=self.found.size,
@@ -241,6 +253,7 @@ class _Check:
             reduced=tuple(map(str, options.reduce.names)) if options.reduce else (),
             allowed=self.found.allowed,
             schedule=schedule,
+            corridors=corridors,
             flights=self.deadlines.longest_flights() if self.deadlines else (),
         )
 
@@ -257,6 +270,15 @@ class _Check:
         except BoundMet as met:
             self.unscheduled = (f"the times of flights were not computed: {met.bound}",)
             return None
+
+    def corridors(self) -> Corridors | None:
+        """Return the ways of flights with their distances, if they were requested."""
+        if self.flown is None:
+            return None
+        from checker.properties.corridors import measured  # noqa: PLC0415 - geometry takes its time to load
+
+        assert self.initial.setting.regions is not None
+        return measured(self.initial.setting.regions, self.flown, complete=self.found.complete)
 
     def search(self) -> Exploration | None:
         """Search for stale observations with the monitor's memory, in the remaining time.

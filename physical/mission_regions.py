@@ -16,6 +16,7 @@ from physical.entity_motions import CarriedBy, EntityMotion, FlightPlan, Standpo
 from physical.geodesic_areas import disc_of
 from physical.geometry_measures import waypoint
 from physical.gnomonic import RegionError
+from physical.leg_lengths import FlightLeg, length_between
 from physical.place_nesting import Place
 from physical.possible_geometries import PossibleGeometries
 from physical.regions import NOWHERE, Located, Region, RegionKind, RegionPart, Source
@@ -133,19 +134,46 @@ class Ways:
     def _in_transit(self, entity: str, at: Transit, flights: Sequence[FlightPlan]) -> list[RegionPart]:
         begin, margin = self._begin(entity, at.origin)
         altitude = self._altitude(at.origin, sorted(self._carriers_in(entity, at, flights)))
+        stops = self._stops(entity, at.origin, flights)
+        if stops:
+            legs = pairwise([(ORIGIN, begin), *((name, [stop]) for name, stop in stops)])
+            return [_leg([*begins, *ends], margin, altitude, (a, b)) for (a, begins), (b, ends) in legs]
         plans = [(*flight.via, flight.to) for flight in flights]
         steps = sorted({name for plan in plans for name in plan})
-        if len(plans) == 1 and all(map(self._of.is_steady, steps)):
-            stops = [self._stop(entity, at.origin, name, name == plans[0][-1]) for name in plans[0]]
-            points = [begin, *([stop] for stop in stops)]
-            names = [ORIGIN, *plans[0]]
-            legs = list(zip(pairwise(points), pairwise(names), strict=True))
-            return [_leg([*here, *there], margin, altitude, ends) for (here, there), ends in legs]
         wholes = [self._of.whole(name) for name in steps or [entity]]
         ends = [GroundPatch(whole.sources, True, whole.margin) for whole in wholes if whole is not None]
         if any(len(plan) > 1 for plan in plans) or not steps:
             ends = [replace(each, margin=each.margin + self._of.radius(entity)) for each in ends]
         return [_leg([*begin, *ends], margin, altitude, (ORIGIN, *steps))]
+
+    def _stops(
+        self, entity: str, origin: Place, flights: Sequence[FlightPlan]
+    ) -> list[tuple[str, GroundPatch]]:
+        """Return the stops of a flight, in order; none if there are several flights, or one leads to a moving place."""
+        plans = [(*flight.via, flight.to) for flight in flights]
+        if len(plans) != 1 or not all(map(self._of.is_steady, plans[0])):
+            return []
+        last = len(plans[0]) - 1
+        return [(name, self._stop(entity, origin, name, rank == last)) for rank, name in enumerate(plans[0])]
+
+    def legs(self, entity: str, at: Transit, flights: frozenset[FlightPlan]) -> tuple[FlightLeg, ...]:
+        """Return the legs of a flight, each with its length; one from end to end if its way is not known.
+
+        Raises:
+            RegionError: If one reaches over 1,000 km from its middle, or covers a pole.
+        """
+        parts = {part.between: part for part in self.region(entity, at, flights).parts}
+        begin, _ = self._begin(entity, at.origin)
+        stops = self._stops(entity, at.origin, tuple(sorted(flights)))
+        if not stops:
+            (whole,) = parts.values()
+            goal = self._of.whole(at.to)
+            patch = [] if goal is None else [GroundPatch(goal.sources, True)]
+            return (FlightLeg(whole, *length_between(begin, patch)._replace(most=None)),)
+        steps = pairwise([(ORIGIN, begin), *((name, [stop]) for name, stop in stops)])
+        return tuple(
+            FlightLeg(parts[a, b], *length_between(begins, ends)) for (a, begins), (b, ends) in steps
+        )
 
     def _begin(self, entity: str, origin: Place) -> tuple[list[GroundPatch], float]:
         """Return where a flight begins, and the metres r by which its legs are grown."""

@@ -6,7 +6,7 @@ from typing import Final
 
 from semantics.behaviours.program import VariableOf
 from semantics.properties.kinds import PropertyKind
-from semantics.properties.propositions import Always, Proposition
+from semantics.properties.propositions import Always, Proposition, atoms_of
 from semantics.properties.region_atoms import RegionAtom
 from semantics.properties.temporal import Fairness, Temporal
 from semantics.state.brief import cut
@@ -74,6 +74,13 @@ def asks_of_regions(properties: Iterable[Property]) -> bool:
     return any(isinstance(part, RegionAtom) for part in _parts(properties))
 
 
+def region_atoms(properties: Iterable[Property]) -> tuple[RegionAtom, ...]:
+    """Return the atoms about regions in the propositions of properties, each once; of a quantifier, its instances'."""
+    formulas = (each.formula for each in properties if each.kind.has_proposition)
+    atoms = (atom for formula in formulas for atom in atoms_of(formula))
+    return tuple(dict.fromkeys(atom for atom in atoms if isinstance(atom, RegionAtom)))
+
+
 def _parts(properties: Iterable[Property]) -> Iterator[object]:
     """Yield the parts of properties, at any depth."""
     waiting: list[object] = list(properties)
@@ -86,10 +93,11 @@ def _parts(properties: Iterable[Property]) -> Iterator[object]:
             waiting.extend(getattr(part, name) for name in getattr(part, "__dataclass_fields__", ()))
 
 
-def watching(c: Configuration, properties: Iterable[Property]) -> Configuration:
+def watching(c: Configuration, properties: Iterable[Property], *, ways: bool = False) -> Configuration:
     """Return an initial configuration with all that its properties need.
 
-    Their variables are kept to the end of the run. The facts that regions need are computed if one asks for regions.
+    Their variables are kept to the end of the run. The facts that regions need are computed if one asks for regions, or
+    with `ways`.
     Endurance is timed only for a property `endurance`, since the clocks of several vehicles multiply the states.
     """
     asked, setting = tuple(properties), c.setting
@@ -101,7 +109,7 @@ def watching(c: Configuration, properties: Iterable[Property]) -> Configuration:
     ):
         timing = timing.without_endurances()
     regions = setting.regions
-    if regions is None and asks_of_regions(asked):
+    if regions is None and (ways or asks_of_regions(asked)):
         from semantics.regions.possible_motions import region_facts  # noqa: PLC0415 - geometry takes its time to load
 
         regions = region_facts(c)
