@@ -24,23 +24,23 @@ MOST_LINES = 4
 def region_lines(formula: Proposition, c: Configuration) -> tuple[str, ...]:
     """Return in words why a proposition is false, as far as regions decide it; one line for each atom."""
     lines: list[str] = []
-    for atom in dict.fromkeys(_deciding(formula, c, wanted=False)):
+    for atom in dict.fromkeys(deciding(formula, c, wanted=False)):
         if len(lines) < MOST_LINES:
             lines.append(f"{_figure(atom, c)}: {_whereabouts(atom, c)}{_points(atom, c)}")
     return tuple(lines)
 
 
-def _deciding(formula: Proposition, c: Configuration, *, wanted: bool) -> Iterator[RegionAtom]:
+def deciding(formula: Proposition, c: Configuration, *, wanted: bool) -> Iterator[RegionAtom]:
     """Yield the atoms about regions that give a formula its truth value; of a quantifier, those of one instance."""
     match formula:
         case Not(inner):
-            yield from _deciding(inner, c, wanted=not wanted)
+            yield from deciding(inner, c, wanted=not wanted)
         case And(parts) | Or(parts):
             one_decides = isinstance(formula, Or) is wanted
             some = (part for part in parts if holds(part, c) is wanted)
             chosen = some if not (one_decides or isinstance(parts, Instances)) else _first(some)
             for part in chosen:
-                yield from _deciding(part, c, wanted=wanted)
+                yield from deciding(part, c, wanted=wanted)
         case PossiblyIn() | SurelyIn() | ApartFrom() | WithinRangeOf():
             yield formula
 
