@@ -27,7 +27,8 @@ from physical.map_marks import (
     draw_polygon_mark,
     samples,
 )
-from physical.map_regions import NO_WAYS, MapWays, draw_regions, path_samples
+from physical.map_region_drawing import draw_regions, path_samples
+from physical.map_regions import NO_WAYS, MapWays
 from physical.map_scene import MapEntity, Scene, Sheet, area_of, arranged, scene_of, shows_coasts
 from physical.map_style import PAPER, QUIET, SEA, kind_colours
 from physical.map_view import bounds, degrees_text, tick_step, ticks

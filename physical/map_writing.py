@@ -26,7 +26,7 @@ from physical.map_marks import (
     draw_pointer,
     draw_scale,
 )
-from physical.map_regions import draw_spans, span_boxes
+from physical.map_region_drawing import draw_spans, span_boxes
 from physical.map_scene import Scene, Sheet, area_of
 from physical.map_style import INK, QUIET, darker
 from physical.map_view import bounds, scale_length

@@ -7,13 +7,14 @@ with a margin is never smaller than its part by more.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from functools import lru_cache
 from typing import Any, Final
 
 import numpy as np
 import shapely
 
-from physical.frame import EARTH_RADIUS, Position
+from physical.frame import EARTH_RADIUS, Position, geod
 from physical.geodesic_areas import area_of, disc_of
 from physical.gnomonic import Disc, frame_of
 from physical.regions import RegionPart
@@ -30,6 +31,9 @@ Ring = tuple[Position, ...]
 
 Rings = tuple[Ring, ...]
 """A polygon: its border, and then its holes."""
+
+Shape = shapely.Geometry
+"""A shape with longitude as x and latitude as y, in degrees."""
 
 
 @lru_cache(maxsize=MEMO)
@@ -81,6 +85,26 @@ def aligned(shape: shapely.Geometry, other: shapely.Geometry) -> shapely.Geometr
     """Return a shape moved by whole turns of longitude next to another one."""
     turns = round((other.centroid.x - shape.centroid.x) / 360.0)
     return shapely.transform(shape, lambda at: at + np.array([360.0 * turns, 0.0])) if turns else shape
+
+
+def outline_around(parts: Sequence[RegionPart], beside: RegionPart, farther: float = 0.0) -> Shape:
+    """Return the outline of parts, grown by some metres, at the longitudes of another part."""
+    middle = outline_of(beside)
+    return shapely.union_all([aligned(outline_of(part, farther), middle) for part in parts])
+
+
+def spot_in(shape: Shape) -> Position:
+    """Return a point of a shape, in its middle if it is there."""
+    east, north = shape.representative_point().coords[0]
+    return (north, east)
+
+
+def farthest_from(shape: Shape, at: Position) -> tuple[Position, float]:
+    """Return the vertex of a shape that is farthest from a position, and its metres from there."""
+    east, north = shapely.get_coordinates(shape).T
+    _, _, metres = geod().inv(np.full(len(east), at[1]), np.full(len(east), at[0]), east, north)
+    found = int(np.argmax(metres))
+    return (float(north[found]), float(east[found])), float(metres[found])
 
 
 def rings_of(shape: shapely.Geometry) -> tuple[Rings, ...]:

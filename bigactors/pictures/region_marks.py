@@ -6,12 +6,10 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Final
 
-import shapely
-
-from physical import Geometry, GeometryError, Located, RegionError, RegionPart, centroid, nearest, polygon
-from physical.frame import Position, geod
+from physical import Geometry, GeometryError, Located, RegionError, centroid, nearest, polygon
+from physical.frame import Position
 from physical.map_regions import NO_WAYS, MapRegion, MapSpan, MapWays
-from physical.region_outlines import aligned, outline_of, rings_of
+from physical.region_outlines import Shape, farthest_from, outline_around, outline_of, rings_of, spot_in
 from semantics.properties.kinds import PropertyKind
 from semantics.properties.property import Property, asks_of_regions, watching
 from semantics.properties.propositions import holds
@@ -130,8 +128,8 @@ class _Drawing:
 
     def __init__(self, c: Configuration) -> None:
         self.c = c
-        self.breaches: list[shapely.Geometry] = []
-        self.limits: list[shapely.Geometry] = []
+        self.breaches: list[Shape] = []
+        self.limits: list[Shape] = []
         self.spans: list[MapSpan] = []
 
     def ways(self, atoms: Sequence[RegionAtom]) -> MapWays:
@@ -187,25 +185,22 @@ class _Drawing:
             case WithinRangeOf(distance=distance):
                 self._within(u, v, distance, broken=not is_true(atom, self.c))
 
-    def _shape(self, u: Located, beside: Located | None = None, farther: float = 0.0) -> shapely.Geometry:
-        shapes = [outline_of(part, farther) for part in u.region.parts]
-        middle = outline_of((u if beside is None else beside).region.parts[0])
-        return shapely.union_all([aligned(shape, middle) for shape in shapes])
+    def _shape(self, u: Located, beside: Located | None = None, farther: float = 0.0) -> Shape:
+        return outline_around(u.region.parts, (u if beside is None else beside).region.parts[0], farther)
 
     def _inside(
         self,
         atom: RegionAtom,
         u: Located,
         v: Located,
-        breach: shapely.Geometry,
+        breach: Shape,
         broken: bool,
         word: str = "in",
     ) -> None:
         if broken and not breach.is_empty:
             self.breaches.append(breach)
-            east, north = breach.representative_point().coords[0]
-            text = f"{u.entity} may be {word} {v.entity}"
-            self.spans.append(MapSpan((north, east), (north, east), text, broken=True))
+            spot, text = spot_in(breach), f"{u.entity} may be {word} {v.entity}"
+            self.spans.append(MapSpan(spot, spot, text, broken=True))
         elif not broken and isinstance(atom, PossiblyIn):
             self._apart(u, v, None, broken=False)
 
@@ -222,10 +217,7 @@ class _Drawing:
         meeting = self._shape(u).intersection(self._shape(v, u))
         if broken:
             self.breaches.append(meeting)
-        spot = found.first.vertices[0]
-        if meeting.area:
-            east, north = meeting.representative_point().coords[0]
-            spot = (north, east)
+        spot = spot_in(meeting) if meeting.area else found.first.vertices[0]
         self.spans.append(MapSpan(spot, spot, f"may meet{gap}" if not gap else f"0 m{gap}", broken))
 
     def _within(self, u: Located, v: Located, distance: float, *, broken: bool) -> None:
@@ -235,24 +227,11 @@ class _Drawing:
             self.limits.append(limit)
             if broken:
                 self.breaches.append(self._shape(u).difference(limit))
-        middle = _middle(v.region.parts[0])
-        corners = shapely.get_coordinates(self._shape(u))
-        count = len(corners)
-        _, _, metres = geod().inv([middle[1]] * count, [middle[0]] * count, corners[:, 0], corners[:, 1])
-        farthest = max(range(count), key=lambda rank: metres[rank])
-        east, north = map(float, corners[farthest])
-        if v.region.certain and v.region.parts[0].sources and _is_point(v.region.parts[0]):
-            text = f"{length_text(metres[farthest])}{f', not {length_text(distance)}' if broken else ''}"
-            self.spans.append(MapSpan(middle, (north, east), text, broken))
-
-
-def _middle(part: RegionPart) -> Position:
-    point = outline_of(part).centroid
-    return (point.y, point.x)
-
-
-def _is_point(part: RegionPart) -> bool:
-    return bool(outline_of(part).geom_type == "Point")
+        if v.region.certain and not v.region.is_area:
+            middle = spot_in(self._shape(v))
+            at, metres = farthest_from(self._shape(u), middle)
+            wanted = f", not {length_text(distance)}" if broken else ""
+            self.spans.append(MapSpan(middle, at, f"{length_text(metres)}{wanted}", broken))
 
 
 def length_text(metres: float) -> str:
