@@ -72,32 +72,45 @@ def points_in(place, count, rng):
 # --- rings of shortest lines ------------------------------------------------------------------------
 
 
-def foot(position, ring):
-    """Return the least distance of a position from a ring: along each edge it has one minimum."""
-    start, end = np.array(ring), np.roll(ring, -1, axis=0)
-    from_start, lengths = metres(position, start), metres(start, end)
-    near = from_start - lengths <= from_start.min()
-    start, end = start[near], end[near]
-    low, high = np.zeros(len(start)), np.ones(len(start))
+def apart(one, other):
+    """Return the distances of all positions from all others."""
+    one, other = np.atleast_2d(one), np.atleast_2d(other)
+    pairs = np.repeat(one, len(other), axis=0), np.tile(other, (len(one), 1))
+    return metres(*pairs).reshape(len(one), len(other))
+
+
+def feet(positions, ring):
+    """Return the least distance of each position from a ring: along each edge it has one minimum."""
+    positions, start, end = np.atleast_2d(positions), np.array(ring), np.roll(ring, -1, axis=0)
+    from_start, lengths = apart(positions, start), metres(start, end)
+    which, edge = np.nonzero(from_start - lengths <= from_start.min(axis=1, keepdims=True))
+    spot, start, end = positions[which], start[edge], end[edge]
+    low, high = np.zeros(len(edge)), np.ones(len(edge))
     for _ in range(60):
         third = (high - low) / 3
-        one, other = (metres(position, between(start, end, at)) for at in (low + third, high - third))
+        one, other = (metres(spot, between(start, end, at)) for at in (low + third, high - third))
         low, high = np.where(one < other, low, low + third), np.where(one < other, high - third, high)
-    return float(metres(position, between(start, end, (low + high) / 2)).min())
+    least = np.full(len(positions), np.inf)
+    np.minimum.at(least, which, metres(spot, between(start, end, (low + high) / 2)))
+    return least
 
 
-def surrounds(ring, position):
-    """Whether a ring goes around a position: the azimuths of its corners turn once."""
-    azimuths = GEOD.inv(*np.broadcast_to(position, np.shape(ring)).T, *np.array(ring).T)[0]
-    turns = (np.diff(np.append(azimuths, azimuths[0])) + 180.0) % 360.0 - 180.0
-    return abs(turns.sum()) > 180.0
+def surrounded(positions, ring):
+    """Whether a ring goes around each position: the azimuths of its corners turn once."""
+    positions, ring = np.atleast_2d(positions), np.vstack([ring, ring[:1]])
+    pairs = np.repeat(positions, len(ring), axis=0), np.tile(ring, (len(positions), 1))
+    azimuths = GEOD.inv(*pairs[0].T, *pairs[1].T)[0].reshape(len(positions), len(ring))
+    turns = (np.diff(azimuths, axis=1) + 180.0) % 360.0 - 180.0
+    return np.abs(turns.sum(axis=1)) > 180.0
 
 
-def away(position, rings):
-    """Return how far a position is from the area of rings: an outer one, then its holes; 0 inside."""
+def away(positions, rings):
+    """Return how far each position is from the area of rings: an outer one, then its holes; 0 inside."""
     outer, *holes = rings
-    inside = len(outer) > 2 and surrounds(outer, position) and not any(surrounds(h, position) for h in holes)
-    return 0.0 if inside else min(foot(position, ring) for ring in rings)
+    inside = surrounded(positions, outer) if len(outer) > 2 else np.zeros(len(np.atleast_2d(positions)), bool)
+    for hole in holes:
+        inside &= ~surrounded(positions, hole)
+    return np.where(inside, 0.0, np.min([feet(positions, ring) for ring in rings], axis=0))
 
 
 def on_ring(ring, along):
@@ -117,8 +130,8 @@ def extreme(one, other, best=np.min, count=150):
     for step in range(14):
         shares = [m + s * np.linspace(-1, 1, count) for m, s in zip(middles, spans, strict=True)]
         a, b = on_ring(one, shares[0]), on_ring(other, shares[1])
-        apart = metres(np.repeat(a, count, axis=0), np.tile(b, (count, 1))).reshape(count, count)
-        i, j = np.unravel_index((sign * apart).argmin(), apart.shape)
+        distances = apart(a, b)
+        i, j = np.unravel_index((sign * distances).argmin(), distances.shape)
         middles = (shares[0][i], shares[1][j])
         spans, count = tuple(4 * s / count for s in spans), 40 if step == 0 else count
-    return float(apart[i, j])
+    return float(distances[i, j])
