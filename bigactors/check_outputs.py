@@ -99,11 +99,18 @@ def _github(results: Sequence[Checked | FailedMission], _: Exit) -> str:
     return "".join(f"{line}\n" for line in annotations(map(result_of, results)))
 
 
+def _geojson(results: Sequence[Checked | FailedMission], _: Exit) -> str:
+    from bigactors.region_features import features_json  # noqa: PLC0415
+
+    return json_text(features_json(results))
+
+
 FORMATS: Final[dict[str, Callable[[Sequence[Checked | FailedMission], Exit], str]]] = {
     "json": _json,
     "junit": _junit,
     "sarif": _sarif,
     "github": _github,
+    "geojson": _geojson,
 }
 """The writer of each format. The names are those of `arguments.FORMATS`."""
 

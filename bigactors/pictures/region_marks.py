@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Final
@@ -231,7 +232,7 @@ class _Drawing:
             middle = spot_in(self._shape(v))
             at, metres = farthest_from(self._shape(u), middle)
             wanted = f", not {length_text(distance)}" if broken else ""
-            self.spans.append(MapSpan(middle, at, f"{length_text(metres)}{wanted}", broken))
+            self.spans.append(MapSpan(middle, at, f"{length_text(math.ceil(metres))}{wanted}", broken))
 
 
 def length_text(metres: float) -> str:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Final
 
 from checker.limits import BoundMet, look
 from checker.properties.flown_stances import FlownStances
-from physical import Located, Region, RegionError, Transit
+from physical import Located, Region, RegionError, RegionPart, Transit
 from physical.part_relations import least_bound
 from physical.region_clearances import Clearance, PlaceSide, clearance, reach
 from physical.region_relations import nearest
@@ -111,6 +111,21 @@ class PairDistance:
 
 
 @dataclass(frozen=True, slots=True)
+class SeenPart:
+    """A part of the region of an entity, in some configuration.
+
+    Attributes:
+        entity: The entity.
+        part: The part.
+        between: The words for its ends, if the entity flies there.
+    """
+
+    entity: Name
+    part: RegionPart
+    between: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
 class Corridors:
     """The ways of a mission's flights over all runs.
 
@@ -118,6 +133,7 @@ class Corridors:
         places: The places that properties about ways name.
         flights: The flights, by vehicle.
         pairs: The least distances of vehicles that may be under way together.
+        parts: All parts of the regions of vehicles and of named entities that may change, each once.
         complete: Whether everything was explored and measured.
         notes: What was left out, and why.
     """
@@ -125,6 +141,7 @@ class Corridors:
     places: tuple[Name, ...] = ()
     flights: tuple[FlightWay, ...] = ()
     pairs: tuple[PairDistance, ...] = ()
+    parts: tuple[SeenPart, ...] = ()
     complete: bool = True
     notes: tuple[str, ...] = ()
 
@@ -150,18 +167,21 @@ class _Measuring:
     def run(self, *, complete: bool) -> Corridors:
         flights: dict[tuple[object, ...], FlightWay] = {}
         pairs: list[PairDistance] = []
+        parts: dict[SeenPart, None] = {}
         self.notes |= dict.fromkeys(f"some ways were not seen: {bound}" for bound in self.seen.bounds)
         try:
             for way in self._flights():
                 known = flights.get(way.key)
                 flights[way.key] = way if known is None else joined(known, way)
             pairs += self._pairs()
+            parts |= dict.fromkeys(self._parts())
         except BoundMet as met:
             self.notes[f"some ways were not measured: {met.bound}"] = None
         return Corridors(
             self.seen.named,
             tuple(sorted(flights.values(), key=lambda way: str(way.key))),
             tuple(pairs),
+            tuple(parts),
             complete and not self.notes,
             tuple(self.notes)[:MOST_NOTES],
         )
@@ -169,8 +189,8 @@ class _Measuring:
     # --- flights ----------------------------------------------------------------------------------
 
     def _flights(self) -> Iterator[FlightWay]:
-        for vehicle in sorted(self.seen.alone):
-            for stance in sorted(self.seen.alone[vehicle], key=self.whereabouts.words):
+        for vehicle, stances in sorted(self.seen.flown().items()):
+            for stance in sorted(stances, key=self.whereabouts.words):
                 look()
                 try:
                     yield self._flight(vehicle, stance)
@@ -208,6 +228,21 @@ class _Measuring:
             far = reach(vehicle, there) if place in self.seen.ranged else None
             found = nearer(found, PlaceDistance(place, clearance(vehicle, there), far))
         return found
+
+    def _parts(self) -> Iterator[SeenPart]:
+        """Yield the parts of all regions; one that something carries is in its carrier's."""
+        steady = {name for name in self.seen.named if self.facts.ways.is_fixed(name)}
+        for entity, stances in sorted(self.seen.alone.items()):
+            for stance in () if entity in steady else sorted(stances, key=self.whereabouts.words):
+                look()
+                try:
+                    located = stance.located(self.facts)
+                except RegionError:  # it is noted already
+                    continue
+                at = stance.at
+                begin = self.whereabouts.origin(entity, at.origin) if isinstance(at, Transit) else ""
+                for part in () if located.carriers else located.region.parts:
+                    yield SeenPart(entity, part, tuple(name or begin for name in part.between))
 
     def _leave_out(self, error: RegionError) -> None:
         where = f"{error.where}: " if error.where else ""

@@ -1,4 +1,4 @@
-"""The stances of entities in transit that are reached, alone and in pairs: an inspection for `check --ways`.
+"""The stances of entities that are reached, alone and in pairs: an inspection for `check --ways`.
 
 A stance is plain data; geometry is computed afterwards (`checker.properties.corridors`).
 """
@@ -23,13 +23,13 @@ Pair = tuple[Name, Name]
 
 
 class FlownStances:
-    """The stances of vehicles in transit, and of pairs of entities of which one is in transit.
+    """The stances of entities, and of pairs of which one is in transit.
 
     Attributes:
         vehicles: The entities that a control may move, sorted.
         named: The other entities that properties about regions name, sorted.
         ranged: Those of them from which a property allows a greatest distance.
-        alone: The stances of each vehicle in transit.
+        alone: The stances of each vehicle and each named entity.
         together: The stances of each pair: of two vehicles, or of a vehicle and a named entity.
         bounds: The bounds at which an engine stopped asking.
     """
@@ -51,10 +51,17 @@ class FlownStances:
 
     def questions(self) -> Iterator[Callable[[Configuration], object]]:
         """Yield the questions; the answer to each is noted before the next one."""
-        from semantics.regions.stances import flying, together  # noqa: PLC0415 - geometry takes its time to load
+        from semantics.regions.stances import standing, together  # noqa: PLC0415 - geometry takes its time to load
 
-        yield from (partial(flying, vehicle) for vehicle in self.vehicles)
-        yield from (partial(together, *pair) for pair in self.pairs(sorted(self.alone)))
+        yield from (partial(standing, name) for name in (*self.vehicles, *self.named))
+        yield from (partial(together, *pair) for pair in self.pairs(sorted(self.flown())))
+
+    def flown(self) -> dict[Name, list[Stance]]:
+        """Return the stances in transit of each vehicle that flies."""
+        found = {
+            name: [each for each in self.alone.get(name, ()) if each.is_flying] for name in self.vehicles
+        }
+        return {name: stances for name, stances in found.items() if stances}
 
     def pairs(self, flown: Iterable[Name]) -> Iterator[Pair]:
         """Yield the pairs of two vehicles that fly, and of one that flies and a named entity."""

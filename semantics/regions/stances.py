@@ -62,6 +62,12 @@ def stance_of(c: Configuration, entity: Name) -> Stance:
     return Stance(tuple(chain), flights(c, bearer) if isinstance(at, Transit) else frozenset())
 
 
+def standing(entity: Name, c: Configuration) -> Stance | None:
+    """Return the stance of an entity, None if it is absent; a question to a configuration."""
+    found = stance_of(c, entity)
+    return None if found.at is None else found
+
+
 def flying(entity: Name, c: Configuration) -> Stance | None:
     """Return the stance of an entity in transit, None at rest; a question to a configuration."""
     if not isinstance(standpoint(c.structure.physical.placement(entity)), Transit):

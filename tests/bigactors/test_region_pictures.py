@@ -31,7 +31,7 @@ def texts_of(svg):
     [
         ("broken_corridor", "uav1 may be in prison0"),
         ("broken_crossing", "may meet"),
-        ("broken_range_of_radio", "9,878 m, not 6 km"),
+        ("broken_range_of_radio", "9,879 m, not 6 km"),
     ],
 )
 def test_the_breach_of_a_property_is_drawn_with_words(name, text):

@@ -39,7 +39,7 @@ def _how_of(options: Namespace) -> How:
         _cluster_of(options),
         options.threads,
         options.times,
-        options.ways,
+        options.ways or any(name == "geojson" for name, _ in options.output),
     )
 
 
