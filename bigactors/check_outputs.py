@@ -77,8 +77,12 @@ def write_outputs(outputs: Iterable[Output], results: Sequence[Checked | FailedM
 
 
 def _json(results: Sequence[Checked | FailedMission], code: Exit) -> str:
-    text = json_text(results_json(list(results), code))
-    return text.encode("utf-8", "backslashreplace").decode()  # escape parts of names that are not UTF-8
+    return _escaped(json_text(results_json(list(results), code)))
+
+
+def _escaped(text: str) -> str:
+    """Return a text with the parts of names escaped that are not UTF-8."""
+    return text.encode("utf-8", "backslashreplace").decode()
 
 
 def _junit(results: Sequence[Checked | FailedMission], _: Exit) -> str:
@@ -102,7 +106,7 @@ def _github(results: Sequence[Checked | FailedMission], _: Exit) -> str:
 def _geojson(results: Sequence[Checked | FailedMission], _: Exit) -> str:
     from bigactors.region_features import features_json  # noqa: PLC0415
 
-    return json_text(features_json(results))
+    return _escaped(json_text(features_json(results)))
 
 
 FORMATS: Final[dict[str, Callable[[Sequence[Checked | FailedMission], Exit], str]]] = {

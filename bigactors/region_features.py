@@ -13,15 +13,36 @@ from physical.region_geojson import line_geometry, part_geometry, place_geometry
 from semantics.properties.property import Property, region_atoms
 from semantics.properties.region_atoms import operands
 from semantics.state.physical_model import Placed
+from semantics.state.setting import Control
 from semantics.state.signature import Name
 
 Feature = dict[str, Any]
 
 
 def features_json(results: Iterable[Checked | FailedMission]) -> dict[str, Any]:
-    """Return the feature collection of all missions that were explored."""
-    features = [each for result in results if isinstance(result, Checked) for each in features_of(result)]
-    return {"type": "FeatureCollection", "features": features}
+    """Return the feature collection of all missions that were explored, with notes on what it lacks."""
+    features: list[Feature] = []
+    notes: list[str] = []
+    for result in results:
+        if isinstance(result, Checked):
+            features += features_of(result)
+        notes += (f"{result.name}: {note}" for note in lacking(result))
+    return {"type": "FeatureCollection", "features": features, "complete": not notes, "notes": notes}
+
+
+def lacking(result: Checked | FailedMission) -> Iterator[str]:
+    """Yield the reasons why regions of a mission are missing."""
+    if isinstance(result, FailedMission):
+        yield result.message
+        return
+    report = result.report
+    yield from (bound.effect for bound in report.bounds)
+    if report.corridors is not None:
+        yield from report.corridors.notes
+    elif result.mission.setting.control is Control.ATOMIC:
+        yield "with 'control atomic' nothing is under way"
+    else:
+        yield f"reduced by {' and '.join(report.reduced)}, the check has left configurations out"
 
 
 def features_of(checked: Checked) -> Iterator[Feature]:

@@ -37,7 +37,8 @@ def features_of(bigactors, tmp_path):
         path = tmp_path / "regions.geojson"
         bigactors("check", *words, "--output", f"geojson:{path}", "--no-traces")
         collection = json.loads(path.read_text())
-        assert list(collection) == ["type", "features"]
+        assert list(collection) == ["type", "features", "complete", "notes"]  # §6.1 allows more members
+        assert collection["complete"]
         assert collection["type"] == "FeatureCollection"
         for feature in collection["features"]:
             assert set(feature) == {"type", "geometry", "properties"}
@@ -132,7 +133,18 @@ def test_the_table_of_ways_is_printed_only_if_it_is_asked_for(bigactors, tmp_pat
     assert "least distance" not in out
 
 
-def test_a_mission_without_flights_in_time_is_refused(bigactors, tmp_path):
-    code, _, said = bigactors("check", "oil_spill", "--output", f"geojson:{tmp_path / 'a.geojson'}")
-    assert code == 2
-    assert "with 'control atomic' nothing is under way" in said
+@pytest.mark.parametrize(
+    ("words", "note"),
+    [
+        (("oil_spill",), "oil_spill: with 'control atomic' nothing is under way"),
+        (("crossing", "--reduce", "por"), "crossing: reduced by por, the check has left configurations out"),
+        (("crossing", "--max-configurations", "2"), "crossing: stopped at the limit of 2 configurations"),
+        (("nowhere",), "nowhere: there is no such file"),
+    ],
+)
+def test_a_document_that_lacks_regions_says_so(bigactors, tmp_path, words, note):
+    path = tmp_path / "a.geojson"
+    bigactors("check", *words, "--output", f"geojson:{path}")
+    collection = json.loads(path.read_text())
+    assert not collection["complete"]
+    assert any(each.startswith(note) for each in collection["notes"])

@@ -39,7 +39,8 @@ def _how_of(options: Namespace) -> How:
         _cluster_of(options),
         options.threads,
         options.times,
-        options.ways or any(name == "geojson" for name, _ in options.output),
+        options.ways,
+        any(name == "geojson" for name, _ in options.output),
     )
 
 
