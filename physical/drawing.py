@@ -27,7 +27,7 @@ from physical.map_marks import (
     draw_polygon_mark,
     samples,
 )
-from physical.map_region_drawing import draw_regions, path_samples
+from physical.map_region_drawing import draw_regions, way_samples
 from physical.map_regions import NO_WAYS, MapWays
 from physical.map_scene import MapEntity, Scene, Sheet, area_of, arranged, scene_of, shows_coasts
 from physical.map_style import PAPER, QUIET, SEA, kind_colours
@@ -122,7 +122,7 @@ def composed(
         scene = arranged(plain, reach)
         curves = [curve for _, curve in (*_channels(scene), *_flights(scene))]
         writing = writing_of(
-            scene, [*(spot for curve in curves for spot in samples(curve)), *path_samples(scene)]
+            scene, [*(spot for curve in curves for spot in samples(curve)), *way_samples(scene)]
         )
         if all(scene.is_polygon(name) for name in writing.unnamed):
             break

@@ -15,6 +15,7 @@ from physical.map_marks import (
     LINES,
     MARKERS,
     RADIUS,
+    SPACING,
     TEXT,
     Curve,
     arc,
@@ -70,12 +71,16 @@ def paths(scene: Scene) -> list[tuple[str, list[Curve]]]:
     return found
 
 
-def path_samples(scene: Scene) -> list[Spot]:
+def way_samples(scene: Scene) -> list[Spot]:
     """Return spots along paths and spans, which names avoid."""
-    curves = [curve for _, legs in paths(scene) for curve in legs]
     lines = (span_ends(scene.sheet, span) for span in scene.ways.spans)
-    curves += [arc(*ends, 0.0) for ends in lines if math.dist(*ends) > 1.0]
-    return [spot for curve in curves for spot in samples(curve)]
+    curves = [arc(*ends, 0.0) for ends in lines if math.dist(*ends) > 1.0]
+    return path_samples(scene) + [spot for curve in curves for spot in samples(curve)]
+
+
+def path_samples(scene: Scene) -> list[Spot]:
+    """Return spots along paths."""
+    return [spot for _, legs in paths(scene) for curve in legs for spot in samples(curve)]
 
 
 def spots_of(sheet: Sheet, rings: Rings) -> list[list[Spot]]:
@@ -91,6 +96,7 @@ def span_ends(sheet: Sheet, span: MapSpan) -> tuple[Spot, Spot]:
 def span_boxes(scene: Scene, taken: Sequence[Box]) -> tuple[Box, ...]:
     """Return a box for the text of each line, beside its middle, where it hides least."""
     boxes: list[Box] = []
+    lines = [around(spot, (SPACING, SPACING)) for spot in path_samples(scene)]
     for span in scene.ways.spans:
         first, second = span_ends(scene.sheet, span)
         middle = (first[0] + second[0]) / 2, (first[1] + second[1]) / 2
@@ -98,7 +104,7 @@ def span_boxes(scene: Scene, taken: Sequence[Box]) -> tuple[Box, ...]:
         frame = scene.sheet.box.grown(-3.0)
         found = [around(at, size) for at in _beside(middle, (first, second), size)]
         ends = [around(spot, (8.0, 8.0)) for spot in (first, second)]
-        hidden = [*taken, *boxes, *ends]
+        hidden = [*taken, *boxes, *ends, *lines]
         boxes.append(min(found, key=lambda box: _hiding(box, frame, hidden)))
     return tuple(boxes)
 
@@ -111,6 +117,10 @@ def _beside(middle: Spot, ends: tuple[Spot, Spot], size: Spot) -> Iterator[Spot]
         for side in (1.0, -1.0):
             reach = side * far * (abs(across[0]) * size[0] / 2 + abs(across[1]) * size[1] / 2 + 5.0)
             yield (middle[0] + across[0] * reach, middle[1] + across[1] * reach)
+    if math.dist(*ends) <= 1.0:  # a spot has room at all sides
+        for far in (8.0, 20.0, 40.0):
+            yield (middle[0] + size[0] / 2 + far, middle[1])
+            yield (middle[0] - size[0] / 2 - far, middle[1])
 
 
 def _hiding(box: Box, frame: Box, taken: Sequence[Box]) -> float:

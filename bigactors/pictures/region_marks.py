@@ -76,7 +76,7 @@ def marks_of(
     *,
     violated: bool | None = None,
 ) -> RegionMarks | None:
-    """Return the marks of the first property about regions that a configuration decides; None without any.
+    """Return the marks of the properties about regions that a configuration decides; None without any.
 
     Args:
         initial: The initial configuration of the run.
@@ -89,13 +89,12 @@ def marks_of(
         return None
     initial = watching(initial, asked)
     known = with_facts(last, initial)
+    atoms: dict[RegionAtom, None] = {}
     for each in asked:
         wanted = each.kind is PropertyKind.REACHABLE
         if violated in (None, not wanted) and holds(each.formula, known) is wanted:
-            atoms = tuple(dict.fromkeys(deciding(each.formula, known, wanted=wanted)))[:MOST_ATOMS]
-            if atoms:
-                return RegionMarks(initial, atoms, last)
-    return None
+            atoms |= dict.fromkeys(deciding(each.formula, known, wanted=wanted))
+    return RegionMarks(initial, tuple(atoms)[:MOST_ATOMS], last) if atoms else None
 
 
 def with_facts(c: Configuration, initial: Configuration) -> Configuration:

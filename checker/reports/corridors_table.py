@@ -92,7 +92,7 @@ def _distance_text(distance: PlaceDistance) -> str:
     if found is None:
         return "-"
     if found.side.value == "across":
-        return f"may be in it{far}"
+        return f"may cross its border{far}"
     gap = f", {found.gap:g} m above or below" if found.gap else ""
     inside = "inside by " if found.side.value == "inside" else ""
     return f"{inside}{math.floor(found.metres):,} m{gap}{far}"
