@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from functools import lru_cache
-from typing import Any, Final
+from typing import Any, Final, TypeAlias
 
 import numpy as np
 import shapely
@@ -32,7 +32,7 @@ Ring = tuple[Position, ...]
 Rings = tuple[Ring, ...]
 """A polygon: its border, and then its holes."""
 
-Shape = shapely.Geometry
+Shape: TypeAlias = shapely.Geometry
 """A shape with longitude as x and latitude as y, in degrees."""
 
 
