@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Hashable, Iterable, Iterator, Sequence
+from dataclasses import dataclass, field
 from typing import Final
 
-from physical import Geometry, GeometryError, Located, RegionError, centroid, nearest, polygon
+from physical import Geometry, GeometryError, Located, RegionError, Transit, centroid, nearest, polygon
 from physical.frame import Position
 from physical.map_regions import NO_WAYS, MapRegion, MapSpan, MapWays
 from physical.region_outlines import Shape, farthest_from, outline_around, outline_of, rings_of, spot_in
@@ -24,6 +24,7 @@ from semantics.properties.region_atoms import (
 )
 from semantics.regions.region_report import deciding
 from semantics.regions.region_truth import flights, is_true, located
+from semantics.regions.stances import stance_of
 from semantics.state.configuration import Configuration
 from semantics.state.physical_model import InTransit
 from semantics.state.signature import Name
@@ -43,23 +44,28 @@ class RegionMarks:
         initial: The run's initial configuration, with the facts about regions.
         atoms: The atoms.
         last: The last configuration, which is marked even if everything is at rest.
+        drawn: The marks so far, by the placements and flights on which they depend.
     """
 
     initial: Configuration
     atoms: tuple[RegionAtom, ...]
     last: Configuration
+    drawn: dict[Hashable, MapWays] = field(default_factory=dict, compare=False, repr=False)
 
     def ways(self, c: Configuration) -> MapWays:
         """Return the marks in a configuration; none while everything is at rest, but for the last one."""
         known = with_facts(c, self.initial)
-        bearers = {name for atom in self.atoms for each in operands(atom) for name in _bearers(c, each)}
-        is_flying = any(isinstance(c.structure.physical.placement(name), InTransit) for name in bearers)
+        names = dict.fromkeys(name for atom in self.atoms for name in operands(atom))
+        stances = tuple(stance_of(known, name) for name in names)
+        is_flying = any(isinstance(stance.chain[-1][1], Transit) for stance in stances)
         if not is_flying and c != self.last:
             return NO_WAYS
-        try:
-            return _Drawing(known).ways(self.atoms)
-        except RegionError:  # the verdict has said so
-            return NO_WAYS
+        if stances not in self.drawn:
+            try:
+                self.drawn[stances] = _Drawing(known).ways(self.atoms)
+            except RegionError:  # the verdict has said so
+                self.drawn[stances] = NO_WAYS
+        return self.drawn[stances]
 
     def positions(self, configurations: Iterable[Configuration]) -> Iterator[Geometry]:
         """Yield geometries around which a map fits the marks in some configurations."""
@@ -102,16 +108,6 @@ def with_facts(c: Configuration, initial: Configuration) -> Configuration:
     if c.setting.regions is not None:
         return c
     return Configuration(c.setting.with_(regions=initial.setting.regions), c.state)
-
-
-def _bearers(c: Configuration, entity: Name) -> Iterator[Name]:
-    """Yield an entity and its carriers."""
-    seen: list[Name] = []
-    name: Name | None = entity
-    while name is not None and name not in seen:
-        seen.append(name)
-        name = getattr(c.structure.physical.placement(name), "by", None)
-    yield from seen
 
 
 def _around(corners: Sequence[Position]) -> Iterator[Geometry]:
