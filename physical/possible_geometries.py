@@ -180,6 +180,8 @@ class PossibleGeometries:
         if self.bringers(entity, at):
             return True
         for place in sorted(self.motion(entity).targets):
+            if self.is_steady(place) and not contains(self.geometry(place), at):
+                continue  # most places
             arrivals = self.arrivals(entity, place)
             if arrivals is None:
                 if self.is_near(place, centroid(at)):
