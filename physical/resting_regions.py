@@ -71,7 +71,7 @@ class RestingPlaces:
 
     def _own(self, entity: str, at: Place) -> Iterator[GroundPatch]:
         motion = self._of.motion(entity)
-        if motion.strays is not None or not motion.targets:
+        if self._is_exact(motion, at.geometry):
             yield GroundPatch((at.geometry,))
         else:
             yield from self._flown_to(motion, at.geometry, (at.altitude,))
@@ -82,11 +82,16 @@ class RestingPlaces:
         face = None if motion.drift is None else standing_for(motion.drift, middle)
         for cover in () if face is None else self._faces(carrier)[face]:
             yield GroundPatch((cover,), margin=radius, kind=RegionKind.FACE)
-        if motion.strays is not None or not motion.targets:
+        if self._is_exact(motion, middle):
             yield GroundPatch((at,))
             return
         for each in self._flown_to(motion, middle, self._of.bands(carrier)):
             yield replace(each, margin=each.margin + radius)
+
+    def _is_exact(self, motion: EntityMotion, at: Geometry) -> bool:
+        """Whether an entity is where P has it, but for what it strays: `run` sent it there, or no flight could have."""
+        said = motion.strays is not None and self._of.is_destination(motion.name, at)
+        return said or not self._of.may_fly_to(motion.name, at)
 
     def _flown_to(
         self, motion: EntityMotion, at: Geometry, bands: Iterable[Band | None]

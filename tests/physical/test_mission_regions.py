@@ -143,6 +143,15 @@ def test_a_target_that_moves_counts_with_all_its_geometries():
     assert [(sources(part), part.spanned) for part in parts] == [({WEST}, False), ({one, other}, True)]
 
 
+def test_a_point_that_run_may_not_take_counts_as_its_place_even_if_it_strays_little():
+    """Off the centre, `run` keeps its circle clear of borders, and P only the point."""
+    hole = fixed("hole", circle((37.025, -8.975), 300))
+    craft = uav(strays=30.0, containers=NAMES | {"hole"})
+    at = nearest_placement(HOME, WEST, [hole.placements[0].geometry])
+    [part] = ways(craft, hole).region("uav", Place(at)).parts
+    assert (part.sources, part.margin) == ((WEST,), 30.0)
+
+
 # --- in transit -----------------------------------------------------------------------------------
 
 
@@ -216,8 +225,10 @@ def test_a_destination_counts_whole_where_the_point_may_change():
 
 def test_the_hull_of_a_target_that_may_be_moved_is_grown_by_what_that_strays():
     ship = EntityMotion("ship", (Place(SOUTH),), targets=frozenset({"west"}), strays=50.0, containers=NAMES)
-    [leg] = ways(uav(targets=frozenset({"ship"}), strays=30.0), ship).region("uav", *flight("ship")).parts
-    assert sources(leg) == {HOME, SOUTH, WEST}
+    off = point(36.9, -8.3)
+    craft = uav(off, targets=frozenset({"ship"}), carriers=frozenset({"ship"}), strays=30.0)
+    [leg] = ways(craft, ship).region("uav", *flight("ship", origin=off)).parts
+    assert sources(leg) == {off, SOUTH, WEST}
     assert leg.margin == pytest.approx(80.0 + 3_570, abs=50)  # half the diagonal of the ship
 
 
