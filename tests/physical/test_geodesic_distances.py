@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from drawing_regions import geometry, hull, rings
 from oracles.random_places import WORLDS, place
-from oracles.sampled_geodesics import apart, away, extreme, feet, metres, on_ring, surrounded
+from oracles.sampled_geodesics import GEOD, apart, away, between, extreme, feet, metres, on_ring, surrounded
 from scale import seeds
 
 from physical import RegionError, box, circle, point
@@ -104,6 +104,23 @@ def test_the_side_of_an_area_between_two_corners_is_farther_than_both():
     middle = feet([0.0, north + 1e-9], rings(shore)[0])[0]
     assert not lies_within(off, shore, ends - 0.01)
     assert lies_within(off, shore, middle + 2.0)
+
+
+@pytest.mark.parametrize("first", [True, False])
+def test_a_frame_that_shows_the_wrong_points_nearest_does_not_decide(first):
+    """Far from its centre, a frame shows 99.5 km longer than 100 km at its centre."""
+    west, east = [-8.0, 45.0], [8.0, 45.0]
+    spots = []
+    for share, apart in ((0.5, 100_000), (0.95, 99_500)):
+        at = between(west, east, share)[0]
+        ahead = GEOD.inv(*at, *east)[0]
+        spots.append(GEOD.fwd(*at, ahead - 90, apart)[:2])
+    line, other = (
+        area_of(hull(*(point(north, east) for east, north in each))) for each in ((west, east), spots)
+    )
+    found = nearest_line(line, other) if first else nearest_line(other, line)
+    assert found.metres == pytest.approx(99_500, abs=0.1)
+    assert metres(found.second if first else found.first, spots[1])[0] < 0.1
 
 
 def test_areas_that_meet_are_no_metre_apart_and_the_point_is_in_both():
