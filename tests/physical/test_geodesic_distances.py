@@ -111,10 +111,10 @@ def test_a_frame_that_shows_the_wrong_points_nearest_does_not_decide(first):
     """Far from its centre, a frame shows 99.5 km longer than 100 km at its centre."""
     west, east = [-8.0, 45.0], [8.0, 45.0]
     spots = []
-    for share, apart in ((0.5, 100_000), (0.95, 99_500)):
+    for share, off in ((0.5, 100_000), (0.95, 99_500)):
         at = between(west, east, share)[0]
         ahead = GEOD.inv(*at, *east)[0]
-        spots.append(GEOD.fwd(*at, ahead - 90, apart)[:2])
+        spots.append(GEOD.fwd(*at, ahead - 90, off)[:2])
     line, other = (
         area_of(hull(*(point(north, east) for east, north in each))) for each in ((west, east), spots)
     )
