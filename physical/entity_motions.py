@@ -85,3 +85,8 @@ class FlightPlan:
     to: str
     via: tuple[str, ...] = ()
     start: str = ""
+
+    @property
+    def stops(self) -> tuple[str, ...]:
+        """All places to which it leads, in order."""
+        return (*self.via, self.to)

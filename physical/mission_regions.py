@@ -13,7 +13,8 @@ from typing import Final, TypeVar
 
 from physical.altitude import Band
 from physical.entity_motions import CarriedBy, EntityMotion, FlightPlan, Standpoint, Transit
-from physical.geodesic_areas import disc_of
+from physical.geodesic_areas import area_of, disc_of
+from physical.geodesic_distances import greatest_distance_of, nearest_line
 from physical.geometry_measures import waypoint
 from physical.gnomonic import RegionError
 from physical.place_nesting import Place
@@ -133,19 +134,43 @@ class Ways:
     def _in_transit(self, entity: str, at: Transit, flights: Sequence[FlightPlan]) -> list[RegionPart]:
         begin, margin = self._begin(entity, at.origin)
         altitude = self._altitude(at.origin, sorted(self._carriers_in(entity, at, flights)))
-        plans = [(*flight.via, flight.to) for flight in flights]
-        steps = sorted({name for plan in plans for name in plan})
-        if len(plans) == 1 and all(map(self._of.is_steady, steps)):
-            stops = [self._stop(entity, at.origin, name, name == plans[0][-1]) for name in plans[0]]
+        stops = self._stops(entity, at.origin, flights)
+        if stops is not None:
             points = [begin, *([stop] for stop in stops)]
-            names = [ORIGIN, *plans[0]]
-            legs = list(zip(pairwise(points), pairwise(names), strict=True))
+            legs = zip(pairwise(points), pairwise([ORIGIN, *flights[0].stops]), strict=True)
             return [_leg([*here, *there], margin, altitude, ends) for (here, there), ends in legs]
+        steps = sorted({name for flight in flights for name in flight.stops})
         wholes = [self._of.whole(name) for name in steps or [entity]]
         ends = [GroundPatch(whole.sources, True, whole.margin) for whole in wholes if whole is not None]
-        if any(len(plan) > 1 for plan in plans) or not steps:
+        if any(flight.via for flight in flights) or not steps:
             ends = [replace(each, margin=each.margin + self._of.radius(entity)) for each in ends]
         return [_leg([*begin, *ends], margin, altitude, (ORIGIN, *steps))]
+
+    def _stops(self, entity: str, origin: Place, flights: Sequence[FlightPlan]) -> list[GroundPatch] | None:
+        """Return where an entity flies to, stop by stop; None if several flights or renewals change the order."""
+        if len(flights) != 1 or not all(map(self._of.is_steady, flights[0].stops)):
+            return None
+        *via, to = flights[0].stops
+        return [
+            *(self._stop(entity, origin, name, False) for name in via),
+            self._stop(entity, origin, to, True),
+        ]
+
+    def length(self, entity: str, at: Transit, flights: frozenset[FlightPlan]) -> tuple[float, float] | None:
+        """Return the least and the greatest metres of an entity's way from stop to stop, without what it strays.
+
+        It is None if a renewal may send the entity over a part of its way again.
+        """
+        stops = self._stops(entity, at.origin, tuple(flights))
+        if stops is None:
+            return None
+        points = [self._begin(entity, at.origin)[0], *([stop] for stop in stops)]
+        least = most = 0.0
+        for here, there in pairwise(points):
+            pairs = [(area_of(_ground(a)), area_of(_ground(b))) for a in here for b in there]
+            least += min(nearest_line(a, b).metres for a, b in pairs)
+            most += max(greatest_distance_of(a, b) for a, b in pairs)
+        return least, most
 
     def _begin(self, entity: str, origin: Place) -> tuple[list[GroundPatch], float]:
         """Return where a flight begins, and the metres r by which its legs are grown."""
@@ -163,7 +188,7 @@ class Ways:
         return frozenset(ends & carriers)
 
     def _stop(self, entity: str, origin: Place, place: str, is_last: bool) -> GroundPatch:
-        """Return where an entity flies to on its way: a point if `run` always sends it there, else the whole place."""
+        """Return where an entity flies to: a point if `run` always sends it there, else the whole place."""
         radius = 0.0 if is_last else self._of.radius(entity)
         whole = self._of.whole(place)
         assert whole is not None  # a steady place
@@ -182,6 +207,10 @@ def _leg(
     sources: set[Source] = {source for each in patches for source in each.sources}
     grown = margin + max(each.margin for each in patches)
     return RegionPart(tuple(sorted(sources, key=_order)), True, grown, altitude, RegionKind.LEG, ends)
+
+
+def _ground(patch: GroundPatch) -> RegionPart:
+    return RegionPart(patch.sources, patch.spanned)
 
 
 def _order(source: Source) -> tuple[object, ...]:

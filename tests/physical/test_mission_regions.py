@@ -15,6 +15,7 @@ from physical import (
     box,
     centroid,
     circle,
+    distance,
     drift_faces,
     nearest_placement,
     point,
@@ -207,6 +208,16 @@ def test_said_to_stray_little_it_flies_from_point_to_point():
         {centroid(SOUTH), centroid(EAST)},
     ]
     assert {leg.margin for leg in legs} == {30.0}
+
+
+def test_the_length_of_a_way_is_that_of_its_legs():
+    near, far = ways(uav()).length("uav", *flight())
+    assert near == pytest.approx(distance(HOME, EAST), abs=0.1)
+    assert far == pytest.approx(distance(HOME, point(37.0, -8.55)), abs=1)
+    exact = ways(uav(strays=30.0)).length("uav", *flight(via=("south",)))
+    legs = distance(HOME, centroid(SOUTH)) + distance(centroid(SOUTH), centroid(EAST))
+    assert exact == (pytest.approx(legs, abs=0.1), pytest.approx(legs, abs=0.1))
+    assert ways(uav(), fixed("east", EAST, may_be_absent=True)).length("uav", *flight()) is None
 
 
 def test_a_destination_counts_whole_where_the_point_may_change():
