@@ -1,20 +1,30 @@
 """Reg(u) of a mission's entities, from their placements and flights.
 
 `Ways` takes what the mission's text says of each entity (`EntityMotion`) once. A region then depends on the placement
-of the entity's outermost carrier (or of itself) and on the flights that move it, and on nothing else.
+of the entity's outermost carrier (or of itself) and on the flights that move it, and on nothing else. Where the past
+matters, everything counts that the mission allows:
+
+- A place that may be absent is not *steady*. While it is, a vehicle may fly to the centre of a larger one, so the
+  smallest steady place around it counts. A VIA leaves out what is absent, and is flown again when it returns, so such
+  a way is one hull.
+- An entity that drifts within a place may be anywhere in its face from its first placement on.
+- What a drifting carrier has put down may be anywhere in the carrier's face, however little it strays.
+- A mover may be outside the hull of its targets by what it strays, and by its own size.
+- A point counts in place of its place only where `run` surely sends the vehicle to it (`is_destination`).
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
+from functools import lru_cache
 from itertools import pairwise
 from typing import Final, TypeVar
 
 from physical.altitude import Band
 from physical.entity_motions import CarriedBy, EntityMotion, FlightPlan, Standpoint, Transit
 from physical.geodesic_areas import area_of, disc_of
-from physical.geodesic_distances import greatest_distance_of, nearest_line
+from physical.geodesic_distances import MOST_KNOWN, greatest_distance_of, nearest_line
 from physical.geometry_measures import waypoint
 from physical.gnomonic import RegionError
 from physical.place_nesting import Place
@@ -35,7 +45,7 @@ class Ways:
     def __init__(self, motions: Iterable[EntityMotion]) -> None:
         self._of: Final = PossibleGeometries(motions)
         self._resting: Final = RestingPlaces(self._of)
-        self._known: Final[dict[tuple[str, Place | Transit, frozenset[FlightPlan]], Region]] = {}
+        self._known: Final = lru_cache(maxsize=MOST_KNOWN)(self._region)
 
     def is_fixed(self, entity: str) -> bool:
         """Whether an entity has one geometry in all configurations in which it is present."""
@@ -79,12 +89,7 @@ class Ways:
         Raises:
             RegionError: If it reaches over 1,000 km from its middle, or covers a pole.
         """
-        if at is None:
-            return NOWHERE
-        key = (entity, at, flights)
-        if key not in self._known:
-            self._known[key] = _named(entity, lambda: self._region(entity, at, flights))
-        return self._known[key]
+        return NOWHERE if at is None else _named(entity, lambda: self._known(entity, at, flights))
 
     def _region(self, entity: str, at: Place | Transit, flights: frozenset[FlightPlan]) -> Region:
         is_area = self.is_area(entity)
@@ -95,7 +100,7 @@ class Ways:
         else:
             parts = self._at_rest(entity, at)
         for part in parts:
-            if part.spanned or part.margin > 0.0:
+            if not part.is_exact:
                 disc_of(part)  # refuse it here
         return Region(tuple(dict.fromkeys(parts)), is_area=is_area)
 
