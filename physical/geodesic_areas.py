@@ -29,7 +29,7 @@ MOST_CHORDS: Final = 4_000
 
 @dataclass(frozen=True, slots=True, eq=False)
 class GeodesicArea:
-    """A point, a line or a polygon whose edges are shortest lines.
+    """A point, a line or a polygon; its edges are shortest lines.
 
     Attributes:
         shape: Its vertices as longitudes and latitudes in degrees; longitudes may be a turn off.
@@ -124,8 +124,8 @@ def _cut_ring(corners: Any) -> Any:
 def _cut(here: Any, there: Any) -> Any:
     """Return the vertices of an edge but for its end, close enough for chords.
 
-    A line that is straight in latitude and longitude bends by the acceleration of its coordinates on the sphere, at
-    most sin φ · (cos φ Δλ² + 2 Δφ Δλ) radians over its whole length; an eighth of this is its sagitta.
+    A line that is straight in latitude and longitude bends on the sphere. The acceleration over its whole length is at
+    most sin φ · (cos φ Δλ² + 2 Δφ Δλ) radians. An eighth of this is its sagitta.
     """
     (east, north), (to_east, to_north) = np.radians(here), np.radians(there)
     across, along = abs(to_east - east), abs(to_north - north)

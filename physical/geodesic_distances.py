@@ -28,7 +28,7 @@ from physical.gnomonic import (
 from physical.shape import MEMO
 
 MOST_KNOWN: Final = 1 << 17
-"""The number of pairs of areas whose rough distances are kept."""
+"""The number of rough distances that are kept."""
 
 MOST_PAIRS: Final = 400_000
 """The largest number of vertices times edges that are compared at once."""

@@ -23,10 +23,10 @@ FINE: Final = 500_000.0
 """Metres from the middle within which figures are good to half a metre."""
 
 FARTHEST_REACH: Final = 1_000_000.0
-"""Metres from the middle within which figures are good to five metres; what reaches farther is refused."""
+"""Metres from the middle within which figures are good to five metres; larger regions are refused."""
 
 BENDING: Final = 0.2
-"""A bound in metres of the error of straightness at `FINE`, for a frame whose centre is beside the middle."""
+"""A bound in metres of the error of straightness at `FINE`, for a frame with its centre beside the middle."""
 
 COARSEST: Final = 0.5
 FINEST: Final = 0.125
@@ -136,7 +136,7 @@ class GnomonicFrame:
     proj: Any
 
     def project(self, shape: shapely.Geometry) -> shapely.Geometry:
-        """Return a shape whose coordinates are longitudes and latitudes in degrees."""
+        """Return the image of a shape in longitudes and latitudes (degrees)."""
         return shapely.transform(shape, self._forward)
 
     def unproject(self, shape: shapely.Geometry) -> shapely.Geometry:

@@ -1,15 +1,15 @@
 """Reg(u) of a mission's entities, from their placements and flights.
 
-`Ways` takes what the mission's text says of each entity (`EntityMotion`) once. A region then depends on the placement
+`Ways` takes the facts about each entity (`EntityMotion`) once. A region then depends on the placement
 of the entity's outermost carrier (or of itself) and on the flights that move it, and on nothing else. Where the past
 matters, everything counts that the mission allows:
 
 - A place that may be absent is not *steady*. While it is, a vehicle may fly to the centre of a larger one, so the
-  smallest steady place around it counts. A VIA leaves out what is absent, and is flown again when it returns, so such
-  a way is one hull.
+  smallest steady place around it counts. A VIA leaves out an absent place, and is flown again when the place
+  returns, so such a way is one hull.
 - An entity that drifts within a place may be anywhere in its face from its first placement on.
-- What a drifting carrier has put down may be anywhere in the carrier's face, however little it strays.
-- A mover may be outside the hull of its targets by what it strays, and by its own size.
+- Cargo that a drifting carrier has put down may be anywhere in the carrier's face, however little it strays.
+- A mover may be outside the hull of its targets by its margin, and by its own size.
 - A point counts in place of its place only where `run` surely sends the vehicle to it (`is_destination`).
 """
 
@@ -162,7 +162,7 @@ class Ways:
         ]
 
     def length(self, entity: str, at: Transit, flights: frozenset[FlightPlan]) -> tuple[float, float] | None:
-        """Return the least and the greatest metres of an entity's way from stop to stop, without what it strays.
+        """Return the least and the greatest metres of an entity's way from stop to stop, without its margin.
 
         It is None if a renewal may send the entity over a part of its way again.
         """

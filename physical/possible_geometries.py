@@ -27,7 +27,7 @@ SMALLEST: Final = 0.5
 
 
 class PossibleGeometries:
-    """W(x) and what follows from it, for each entity x of a mission."""
+    """W(x) and its consequences, for each entity x of a mission."""
 
     def __init__(self, motions: Iterable[EntityMotion]) -> None:
         self.motions: Final = {motion.name: motion for motion in motions}
@@ -35,7 +35,7 @@ class PossibleGeometries:
         self._arrivals: Final[dict[tuple[str, str], frozenset[Geometry] | None]] = {}
 
     def motion(self, entity: str) -> EntityMotion:
-        """Return what the mission says about an entity; nothing about an unknown one."""
+        """Return the facts about an entity; none about an unknown one."""
         return self.motions.get(entity) or EntityMotion(entity)
 
     def whole(self, entity: str) -> RegionPart | None:
@@ -53,7 +53,7 @@ class PossibleGeometries:
         return RegionPart(tuple(sorted(sources)), spanned=True, margin=margin, kind=RegionKind.LEG)
 
     def kin(self, entity: str) -> frozenset[str]:
-        """Return the entities whose geometries W(x) has: its carriers', and those of its targets if it may be moved."""
+        """Return the entities of W(x): x, its carriers, and its targets if it may be moved."""
         found, waiting = {entity}, [entity]
         while waiting:
             motion = self.motion(waiting.pop())
@@ -146,7 +146,7 @@ class PossibleGeometries:
         )
 
     def _central(self, entity: str, place: str) -> frozenset[Geometry] | None:
-        """Return the central placement in a place if it is free whatever moves there, else None."""
+        """Return the central placement in a place if it is always free, else None."""
         target = self.geometry(place)
         if any(not form.geometry.is_point for form in self.motion(entity).forms):
             return None

@@ -313,6 +313,14 @@ def test_put_down_by_a_carrier_that_drifts_it_is_anywhere_in_the_face():
     assert [part.kind for part in parts] == [RegionKind.REST, RegionKind.FACE]
 
 
+def test_where_a_carrier_may_have_put_it_down_it_is_not_certain():
+    """The mission puts both at one point; the ship may have put the vehicle down there, somewhere in its circle."""
+    ship = EntityMotion("ship", (Place(HOME),), targets=frozenset({"south"}), circle=40.0)
+    assert ways(uav(), ship).region("uav", Place(HOME)).certain
+    [part] = ways(uav(carriers=frozenset({"ship"})), ship).region("uav", Place(HOME)).parts
+    assert (part.sources, part.margin, part.kind) == ((HOME,), 40.0, RegionKind.REST)
+
+
 # --- faces ----------------------------------------------------------------------------------------
 
 
