@@ -99,11 +99,12 @@ def test_the_side_of_an_area_between_two_corners_is_farther_than_both():
     """A parallel of the shore: both ends of a line 50 km off are nearer than its middle, by the earth's curvature."""
     shore = area_of(hull(point(0.0, -1.0), point(0.0, 1.0)))
     north = 50_000 / 110_574
+    west, east = [-0.45, north], [0.45, north]
     off = area_of(hull(point(north, -0.45), point(north, 0.45)))
-    ends = feet([-0.45, north], rings(shore)[0])[0]
-    middle = feet([0.0, north + 1e-9], rings(shore)[0])[0]
-    assert not lies_within(off, shore, ends - 0.01)
-    assert lies_within(off, shore, middle + 2.0)
+    ends, middle = feet([west, between(west, east, 0.5)[0]], rings(shore)[0])
+    assert middle > ends + 1.4
+    assert not lies_within(off, shore, ends + 0.7)
+    assert lies_within(off, shore, middle + 0.2)
 
 
 @pytest.mark.parametrize("first", [True, False])
