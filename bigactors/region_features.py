@@ -10,7 +10,7 @@ from bigactors.pictures import marks_of
 from checker.properties.corridors import SeenPart
 from checker.verdicts import Verdict
 from physical.region_geojson import line_geometry, part_geometry, place_geometry, polygon_geometry
-from semantics.properties.property import Property, region_atoms
+from semantics.properties.property import Property, instantiated_region_atoms
 from semantics.properties.region_atoms import operands
 from semantics.state.physical_model import Placed
 from semantics.state.setting import Control
@@ -95,7 +95,7 @@ def _places(checked: Checked) -> Iterator[Feature]:
 
 
 def _named(asked: Property) -> frozenset[Name]:
-    return frozenset(name for atom in region_atoms([asked]) for name in operands(atom))
+    return frozenset(name for atom in instantiated_region_atoms([asked]) for name in operands(atom))
 
 
 def _violations(checked: Checked, verdict: Verdict) -> Iterator[Feature]:

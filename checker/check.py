@@ -31,7 +31,7 @@ from checker.reduction.refusals import Reduction, RefusedError
 from checker.traces import Trace, trace_of, trace_to
 from checker.verdicts import Outcome, Report, Verdict, Verdicts, Violation
 from semantics.properties.kinds import PropertyKind
-from semantics.properties.property import Property, region_atoms, watching
+from semantics.properties.property import Property, instantiated_region_atoms, watching
 from semantics.races.monitor import monitored
 from semantics.state.configuration import Configuration
 from semantics.state.setting import Control
@@ -195,7 +195,7 @@ class _Check:
     ) -> None:
         self.initial = initial
         self.times = times
-        self.flown = FlownStances(initial, region_atoms(properties)) if ways else None
+        self.flown = FlownStances(initial, instantiated_region_atoms(properties)) if ways else None
         self.properties = properties
         self.options = options
         self.most = most

@@ -1,19 +1,30 @@
 """Reg(u) of a mission's entities, from their placements and flights.
 
-`Ways` takes what the mission's text says of each entity (`EntityMotion`) once. A region then depends on the placement
-of the entity's outermost carrier (or of itself) and on the flights that move it, and on nothing else.
+`Ways` takes the facts about each entity (`EntityMotion`) once. A region then depends on the placement
+of the entity's outermost carrier (or of itself) and on the flights that move it, and on nothing else. Where the past
+matters, everything counts that the mission allows:
+
+- A place that may be absent is not *steady*. While it is, a vehicle may fly to the centre of a larger one, so the
+  smallest steady place around it counts. A VIA leaves out an absent place, and is flown again when the place
+  returns, so such a way is one hull.
+- An entity that drifts within a place may be anywhere in its face from its first placement on.
+- Cargo that a drifting carrier has put down may be anywhere in the carrier's face, however little it strays.
+- A mover may be outside the hull of its targets by its margin, and by its own size.
+- A point counts in place of its place only where `run` surely sends the vehicle to it (`is_destination`).
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
+from functools import lru_cache
 from itertools import pairwise
 from typing import Final, TypeVar
 
 from physical.altitude import Band
 from physical.entity_motions import CarriedBy, EntityMotion, FlightPlan, Standpoint, Transit
 from physical.geodesic_areas import disc_of
+from physical.geodesic_distances import MOST_KNOWN
 from physical.geometry_measures import waypoint
 from physical.gnomonic import RegionError
 from physical.leg_lengths import FlightLeg, length_between
@@ -35,7 +46,7 @@ class Ways:
     def __init__(self, motions: Iterable[EntityMotion]) -> None:
         self._of: Final = PossibleGeometries(motions)
         self._resting: Final = RestingPlaces(self._of)
-        self._known: Final[dict[tuple[str, Place | Transit, frozenset[FlightPlan]], Region]] = {}
+        self._known: Final = lru_cache(maxsize=MOST_KNOWN)(self._region)
 
     def is_fixed(self, entity: str) -> bool:
         """Whether an entity has one geometry in all configurations in which it is present."""
@@ -79,12 +90,7 @@ class Ways:
         Raises:
             RegionError: If it reaches over 1,000 km from its middle, or covers a pole.
         """
-        if at is None:
-            return NOWHERE
-        key = (entity, at, flights)
-        if key not in self._known:
-            self._known[key] = _named(entity, lambda: self._region(entity, at, flights))
-        return self._known[key]
+        return NOWHERE if at is None else _named(entity, lambda: self._known(entity, at, flights))
 
     def _region(self, entity: str, at: Place | Transit, flights: frozenset[FlightPlan]) -> Region:
         is_area = self.is_area(entity)
@@ -95,7 +101,7 @@ class Ways:
         else:
             parts = self._at_rest(entity, at)
         for part in parts:
-            if part.spanned or part.margin > 0.0:
+            if not part.is_exact:
                 disc_of(part)  # refuse it here
         return Region(tuple(dict.fromkeys(parts)), is_area=is_area)
 
@@ -136,26 +142,26 @@ class Ways:
         bearers = self._carriers_in(entity, at, flights).union(self._of.bringers(entity, at.origin.geometry))
         altitude = self._altitude(at.origin, sorted(bearers))
         stops = self._stops(entity, at.origin, flights)
-        if stops:
-            legs = pairwise([(ORIGIN, begin), *((name, [stop]) for name, stop in stops)])
-            return [_leg([*begins, *ends], margin, altitude, (a, b)) for (a, begins), (b, ends) in legs]
-        plans = [(*flight.via, flight.to) for flight in flights]
-        steps = sorted({name for plan in plans for name in plan})
+        if stops is not None:
+            points = [begin, *([stop] for stop in stops)]
+            legs = zip(pairwise(points), pairwise([ORIGIN, *flights[0].stops]), strict=True)
+            return [_leg([*here, *there], margin, altitude, ends) for (here, there), ends in legs]
+        steps = sorted({name for flight in flights for name in flight.stops})
         wholes = [self._of.whole(name) for name in steps or [entity]]
         ends = [GroundPatch(whole.sources, True, whole.margin) for whole in wholes if whole is not None]
-        if any(len(plan) > 1 for plan in plans) or not steps:
+        if any(flight.via for flight in flights) or not steps:
             ends = [replace(each, margin=each.margin + self._of.radius(entity)) for each in ends]
         return [_leg([*begin, *ends], margin, altitude, (ORIGIN, *steps))]
 
-    def _stops(
-        self, entity: str, origin: Place, flights: Sequence[FlightPlan]
-    ) -> list[tuple[str, GroundPatch]]:
-        """Return the stops of a flight, in order; none if there are several flights, or one leads to a moving place."""
-        plans = [(*flight.via, flight.to) for flight in flights]
-        if len(plans) != 1 or not all(map(self._of.is_steady, plans[0])):
-            return []
-        last = len(plans[0]) - 1
-        return [(name, self._stop(entity, origin, name, rank == last)) for rank, name in enumerate(plans[0])]
+    def _stops(self, entity: str, origin: Place, flights: Sequence[FlightPlan]) -> list[GroundPatch] | None:
+        """Return where an entity flies to, stop by stop; None if several flights or renewals change the order."""
+        if len(flights) != 1 or not all(map(self._of.is_steady, flights[0].stops)):
+            return None
+        *via, to = flights[0].stops
+        return [
+            *(self._stop(entity, origin, name, False) for name in via),
+            self._stop(entity, origin, to, True),
+        ]
 
     def legs(self, entity: str, at: Transit, flights: frozenset[FlightPlan]) -> tuple[FlightLeg, ...]:
         """Return the legs of a flight, each with its length; one from end to end if its way is not known.
@@ -165,16 +171,28 @@ class Ways:
         """
         parts = {part.between: part for part in self.region(entity, at, flights).parts}
         begin, _ = self._begin(entity, at.origin)
-        stops = self._stops(entity, at.origin, tuple(sorted(flights)))
-        if not stops:
+        plans = tuple(sorted(flights))
+        stops = self._stops(entity, at.origin, plans)
+        if stops is None:
             (whole,) = parts.values()
             goal = self._of.whole(at.to)
             patch = [] if goal is None else [GroundPatch(goal.sources, True)]
             return (FlightLeg(whole, *length_between(begin, patch)._replace(most=None)),)
-        steps = pairwise([(ORIGIN, begin), *((name, [stop]) for name, stop in stops)])
+        steps = pairwise(
+            [(ORIGIN, begin), *((name, [at]) for name, at in zip(plans[0].stops, stops, strict=True))]
+        )
         return tuple(
             FlightLeg(parts[a, b], *length_between(begins, ends)) for (a, begins), (b, ends) in steps
         )
+
+    def length(self, entity: str, at: Transit, flights: frozenset[FlightPlan]) -> tuple[float, float] | None:
+        """Return the least and the greatest metres of an entity's way from stop to stop, without its margin.
+
+        It is None if a renewal may send the entity over a part of its way again.
+        """
+        legs = self.legs(entity, at, flights)
+        most = [leg.most for leg in legs if leg.most is not None]
+        return (sum(leg.least for leg in legs), sum(most)) if len(most) == len(legs) else None
 
     def _begin(self, entity: str, origin: Place) -> tuple[list[GroundPatch], float]:
         """Return where a flight begins, and the metres r by which its legs are grown."""
@@ -192,7 +210,7 @@ class Ways:
         return frozenset(ends & carriers)
 
     def _stop(self, entity: str, origin: Place, place: str, is_last: bool) -> GroundPatch:
-        """Return where an entity flies to on its way: a point if `run` always sends it there, else the whole place."""
+        """Return where an entity flies to: a point if `run` always sends it there, else the whole place."""
         radius = 0.0 if is_last else self._of.radius(entity)
         whole = self._of.whole(place)
         assert whole is not None  # a steady place
