@@ -44,7 +44,7 @@ def aligned(rows: Iterator[Row]) -> Iterator[str]:
 def flight_rows(found: Corridors) -> Iterator[Row]:
     """Yield the table of flights row by row, its head first."""
     shown = shown_places(found)
-    yield ("ways", "length", *(f"from {found.places[rank]}" for rank in shown))
+    yield (f"ways{_so_far(found)}", "length", *(f"from {found.places[rank]}" for rank in shown))
     for flight in found.flights[:MOST_ROWS]:
         yield _row(f"  {name_of(flight)}", flight.whole, shown)
         for leg in flight.legs:
@@ -53,6 +53,10 @@ def flight_rows(found: Corridors) -> Iterator[Row]:
     for count, what in zip(left, ("flights", "places, which no flight comes nearer to"), strict=True):
         if count > 0:
             yield (f"  and {count:,} more {what}: see --json", *[""] * (1 + len(shown)))
+
+
+def _so_far(found: Corridors) -> str:
+    return "" if found.complete else " so far"
 
 
 def shown_places(found: Corridors) -> tuple[int, ...]:
@@ -103,7 +107,7 @@ def _distance_text(distance: PlaceDistance) -> str:
 
 def pair_rows(found: Corridors) -> Iterator[Row]:
     """Yield the table of pairs row by row, its head first."""
-    yield ("vehicles under way together", "least distance", "where")
+    yield (f"vehicles under way together{_so_far(found)}", "least distance", "where")
     for pair in found.pairs[:MOST_ROWS]:
         rest = "" if pair.both_fly else ", one at rest"
         yield (f"  {', '.join(pair.vehicles)}{rest}", _metres_text(pair), ", ".join(pair.where))

@@ -119,3 +119,5 @@ def test_ways_are_refused_where_they_cannot_be_listed(bigactors, words, reason):
 def test_a_bound_leaves_ways_out_and_says_so(bigactors):
     found = ways_of(bigactors, "corridor", "--max-configurations", "3")
     assert not found["complete"]
+    _, out, _ = bigactors("check", "corridor", "--max-configurations", "8", "--ways")
+    assert "\n  ways so far " in out
