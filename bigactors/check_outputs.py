@@ -77,8 +77,12 @@ def write_outputs(outputs: Iterable[Output], results: Sequence[Checked | FailedM
 
 
 def _json(results: Sequence[Checked | FailedMission], code: Exit) -> str:
-    text = json_text(results_json(list(results), code))
-    return text.encode("utf-8", "backslashreplace").decode()  # escape parts of names that are not UTF-8
+    return _escaped(json_text(results_json(list(results), code)))
+
+
+def _escaped(text: str) -> str:
+    """Return a text with the parts of names escaped that are not UTF-8."""
+    return text.encode("utf-8", "backslashreplace").decode()
 
 
 def _junit(results: Sequence[Checked | FailedMission], _: Exit) -> str:
@@ -99,11 +103,18 @@ def _github(results: Sequence[Checked | FailedMission], _: Exit) -> str:
     return "".join(f"{line}\n" for line in annotations(map(result_of, results)))
 
 
+def _geojson(results: Sequence[Checked | FailedMission], _: Exit) -> str:
+    from bigactors.region_features import features_json  # noqa: PLC0415
+
+    return _escaped(json_text(features_json(results)))
+
+
 FORMATS: Final[dict[str, Callable[[Sequence[Checked | FailedMission], Exit], str]]] = {
     "json": _json,
     "junit": _junit,
     "sarif": _sarif,
     "github": _github,
+    "geojson": _geojson,
 }
 """The writer of each format. The names are those of `arguments.FORMATS`."""
 

@@ -30,9 +30,12 @@ from checker import (
     check,
     report_json,
 )
+from checker.engines.capabilities import REDUCTIONS, Feature, require
 from checker.engines.contract import TickError
 from checker.properties.findings import MOST_VIOLATIONS
+from physical import RegionError
 from semantics.state.canonical import digest
+from semantics.state.setting import Control
 from specs.elaboration import ElaboratedMission, Variation
 
 FAILURE_SCHEMA = "bigactors.failure/1"
@@ -108,7 +111,10 @@ class FailedMission:
 
 @dataclass(frozen=True, slots=True)
 class How:
-    """The keyword arguments of `check`, the same for all missions."""
+    """The keyword arguments of `check`, the same for all missions.
+
+    With `regions`, ways are computed where they can be, and nothing is refused.
+    """
 
     engine: Engine | None = None
     violations: int = MOST_VIOLATIONS
@@ -117,6 +123,8 @@ class How:
     cluster: Cluster | None = None
     threads: int | None = None
     times: bool = False
+    ways: bool = False
+    regions: bool = False
 
 
 def check_mission(
@@ -141,6 +149,7 @@ def check_mission(
                 cluster=how.cluster,
                 threads=how.threads,
                 times=how.times,
+                ways=how.ways or (how.regions and unlisted_ways(mission, how) is None),
             )
         if how.times:
             _check_times(name, mission, report)
@@ -153,9 +162,11 @@ def check_mission(
         mistake = Mistake(str(refused) or "there is not enough memory", hint, name)
         tell(str(mistake))
         return FailedMission(name, code, mistake.message, mistake.details)
+    except RegionError as error:
+        what = f"{error.where}: {error.message}" if error.where else error.message
+        return _failed(name, Mistake(f"a property asks for a region, and {what}", error.hint, name))
     except Mistake as mistake:
-        tell(str(mistake))
-        return FailedMission(name, Exit.MISTAKE, mistake.message, mistake.details)
+        return _failed(name, mistake)
     except KeyboardInterrupt:
         message = "interrupted: nothing is decided of it"
         tell(f"{name}: {message}")
@@ -163,6 +174,21 @@ def check_mission(
     except Exception as error:  # any other exception is our bug; the remaining missions are still checked
         tell(f"{name}:\n{describe_bug(error)}")
         return FailedMission(name, Exit.BUG, f"internal error: {type(error).__name__}: {error}")
+
+
+def unlisted_ways(mission: ElaboratedMission, how: How) -> str | None:
+    """Return why the ways of a mission's flights cannot be listed, None if they can."""
+    asked = {Feature.WAYS, *(REDUCTIONS[each] for each in how.reduce)}
+    try:
+        require(frozenset(asked | ({Feature.ATOMIC} if mission.setting.control is Control.ATOMIC else set())))
+    except CombinationError as unmet:
+        return str(unmet)
+    return None
+
+
+def _failed(name: str, mistake: Mistake) -> FailedMission:
+    tell(str(mistake))
+    return FailedMission(name, Exit.MISTAKE, mistake.message, mistake.details)
 
 
 def _check_times(name: str, mission: ElaboratedMission, report: Report) -> None:

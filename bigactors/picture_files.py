@@ -11,6 +11,7 @@ from bigactors.pages import Story, page_of, telling
 from bigactors.pages.timeline_page import timeline_page
 from bigactors.pictures import draw_configuration, draw_overview, draw_trace
 from bigactors.pictures.hitting_times import Curve, draw_curves
+from bigactors.pictures.region_marks import RegionMarks
 from bigactors.pictures.timeline import draw_timeline
 from checker import Trace
 from checker.properties.schedule import Schedule
@@ -22,13 +23,21 @@ MOST_PICTURES = 100
 """The longest trace with a drawing of every configuration. Longer traces get only the overview."""
 
 
-def draw(configuration: Configuration, path: str, title: str, before: Configuration | None = None) -> None:
-    """Draw a configuration into a file, with the changes since the one before."""
+def draw(
+    configuration: Configuration,
+    path: str,
+    title: str,
+    before: Configuration | None = None,
+    marks: RegionMarks | None = None,
+) -> None:
+    """Draw a configuration into a file, with the changes since the one before, and marks of regions."""
     with _mistakes(path):
-        draw_configuration(configuration, title=title, changed=before).save(path)
+        draw_configuration(configuration, title=title, changed=before, marks=marks).save(path)
 
 
-def draw_run(trace: Trace, folder: Path, title: str, *, each_step: bool) -> None:
+def draw_run(
+    trace: Trace, folder: Path, title: str, *, each_step: bool, marks: RegionMarks | None = None
+) -> None:
     """Draw a trace into a folder: the overview `trace.svg`, and with `each_step` every configuration (0.2 s each)."""
     labels = [step.label for step in trace.steps]
     with _mistakes(str(folder)):
@@ -41,6 +50,7 @@ def draw_run(trace: Trace, folder: Path, title: str, *, each_step: bool) -> None
                 loop=trace.loop,
                 moments=trace.moments,
                 race=trace.race,
+                marks=marks,
             )
         else:
             draw_overview(lanes_of_trace(trace), title=title).save(folder / "trace.svg")

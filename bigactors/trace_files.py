@@ -8,6 +8,7 @@ from bigactors.checking import Checked
 from bigactors.files import file_stem, make_folder, write_json, write_text
 from bigactors.pages import MOST_PICTURES, Story, trace_page
 from bigactors.picture_files import draw_run
+from bigactors.pictures import RegionMarks, marks_of
 from checker import Trace, print_trace, to_json
 from semantics.properties.kinds import PropertyKind
 from semantics.state.printing import print_configuration
@@ -25,6 +26,7 @@ class Evidence:
         violated: Whether it ends in a violation.
         telling: Whether each configuration is drawn: the trace ends in a violation, or in a wanted configuration.
         details: More lines of the description.
+        marks: The regions that the property is about.
     """
 
     property: str
@@ -34,10 +36,12 @@ class Evidence:
     violated: bool
     telling: bool
     details: tuple[str, ...] = ()
+    marks: RegionMarks | None = None
 
 
 def evidence_of(checked: Checked) -> Iterator[Evidence]:
     """Yield the trace of each violation and of each witness in a report."""
+    initial = checked.mission.initial
     for verdict in checked.report.verdicts:
         name = verdict.property.name
         for violation in verdict.violations:
@@ -50,11 +54,17 @@ def evidence_of(checked: Checked) -> Iterator[Evidence]:
                 True,
                 telling=True,
                 details=violation.told,
+                marks=marks_of(
+                    initial, violation.trace.configurations[-1], [verdict.property], violated=True
+                ),
             )
         if verdict.witness is not None:
             found = verdict.property.kind is PropertyKind.REACHABLE
             stem = file_stem(f"{name}-witness")
-            yield Evidence(name, stem, f"{name}: a witness", verdict.witness, False, telling=found)
+            last = verdict.witness.configurations[-1]
+            marks = marks_of(initial, last, [verdict.property], violated=False)
+            about = f"{name}: a witness"
+            yield Evidence(name, stem, about, verdict.witness, False, telling=found, marks=marks)
 
 
 def write_evidence(checked: Checked, folder: Path) -> tuple[Path, ...]:
@@ -68,7 +78,8 @@ def write_evidence(checked: Checked, folder: Path) -> tuple[Path, ...]:
         target = make_folder(str(_free(folder / each.stem, written)))
         write_text(str(target / "trace.txt"), "\n".join(_lines(checked, each)) + "\n")
         write_json(str(target / "trace.json"), to_json(each.trace, checked.name, checked.digest))
-        draw_run(each.trace, target, f"{checked.mission.name}, {each.stem}:", each_step=each.telling)
+        title = f"{checked.mission.name}, {each.stem}:"
+        draw_run(each.trace, target, title, each_step=each.telling, marks=each.marks)
         write_text(str(target / "trace.html"), trace_page(story_of(checked, each)))
         written.append(target)
     return tuple(written)
@@ -87,6 +98,7 @@ def story_of(checked: Checked, evidence: Evidence) -> Story:
         drawn=drawn,
         note=note,
         details=evidence.details,
+        marks=evidence.marks,
     )
 
 

@@ -11,8 +11,10 @@ from checker.engines.choose import explore_by
 from checker.engines.contract import Cluster, Engine, Exploration, Keeping, Options, Reporter
 from checker.handover import Compilation, Handover
 from checker.limits import BoundMet, CheckPart, Limits, Stop, bounded
+from checker.properties.assumed_ways import assumed_ways
 from checker.properties.coverage import coverage
 from checker.properties.findings import MOST_VIOLATIONS, Collected, Finding
+from checker.properties.flown_stances import FlownStances
 from checker.properties.inspections import (
     Arrival,
     Computation,
@@ -30,11 +32,13 @@ from checker.reduction.refusals import Reduction, RefusedError
 from checker.traces import Trace, trace_of, trace_to
 from checker.verdicts import Outcome, Report, Verdict, Verdicts, Violation
 from semantics.properties.kinds import PropertyKind
-from semantics.properties.property import Property, watching
+from semantics.properties.property import Property, instantiated_region_atoms, watching
 from semantics.races.monitor import monitored
 from semantics.state.configuration import Configuration
+from semantics.state.setting import Control
 
 if TYPE_CHECKING:
+    from checker.properties.corridors import Corridors
     from checker.properties.deadlines import Deadlines
     from checker.properties.schedule import Schedule
     from checker.properties.temporal.decide import TemporalDecider
@@ -85,6 +89,7 @@ def check(  # noqa: PLR0913 - independent options
     cluster: Cluster | None = None,
     threads: int | None = None,
     times: bool = False,
+    ways: bool = False,
 ) -> Report:
     """Explore the reachable configurations and decide the properties.
 
@@ -104,6 +109,7 @@ def check(  # noqa: PLR0913 - independent options
         cluster: The workers of the engine Ray.
         threads: The most threads of the fast explorer; by default one for each core.
         times: Whether the report says when flights may begin and end, for a mission with `timing`.
+        ways: Whether the report lists the ways of all flights, with their lengths and distances.
 
     Raises:
         CombinationError: Two options do not work together, or one with the mission (`checker.engines.capabilities`).
@@ -112,10 +118,14 @@ def check(  # noqa: PLR0913 - independent options
         TypeError: A configuration is given without properties.
     """
     initial, asked, notes = _asked(start, properties, notes)
-    initial, limits = watching(initial, asked), limits or Limits()
+    initial, limits = watching(initial, asked, ways=ways), limits or Limits()
+    notes = (*notes, *assumed_ways(initial.setting))
     formulas, reductions = _formulas(asked), tuple(reduce)
     timing = initial.setting.timing is not None
-    wanted = features(limits, keeping, reductions, cluster=cluster, threads=threads, timing=timing)
+    atomic = initial.setting.control is Control.ATOMIC
+    wanted = features(
+        limits, keeping, reductions, cluster=cluster, threads=threads, timing=timing, ways=ways, atomic=atomic
+    )
     able = engines(wanted, engine)
     runs = [each for each in asked if each.is_of_runs]
     reducer = _reduced(initial, reductions, formulas, runs) if reductions else None
@@ -124,12 +134,12 @@ def check(  # noqa: PLR0913 - independent options
 
     def run(engine: Engine, limits: Limits) -> Report:
         exploration = replace(options, engine=engine, limits=limits)
-        return _Check(initial, asked, exploration, violations, times=times).run(notes)
+        return _Check(initial, asked, exploration, violations, times=times, ways=ways).run(notes)
 
     impatient = limits.seconds is None or limits.seconds > PATIENCE
     if len(able) == 1 or not impatient:
         return run(able[0], limits)
-    with Handover(PATIENCE, Compilation(initial, asked, reductions, threads, times)) as handover:
+    with Handover(PATIENCE, Compilation(initial, asked, reductions, threads, times, ways)) as handover:
         tried = run(able[0], replace(limits, overtaken=handover.is_due, uncounted=handover.uncounted))
     stops = {bound.stop for bound in tried.bounds}
     if Stop.OVERTAKEN in stops or (handover.is_waiting and Stop.MEMORY in stops):
@@ -191,9 +201,11 @@ class _Check:
         most: int,
         *,
         times: bool = False,
+        ways: bool = False,
     ) -> None:
         self.initial = initial
         self.times = times
+        self.flown = FlownStances(initial, instantiated_region_atoms(properties)) if ways else None
         self.properties = properties
         self.options = options
         self.most = most
@@ -222,7 +234,8 @@ class _Check:
     def run(self, notes: tuple[str, ...]) -> Report:
         """Explore, and decide the properties."""
         races = (self.races,) if self.searching else ()
-        everything = (self.visited, *self.inspections.values(), *races, *self.formulas.values())
+        flown = () if self.flown is None else (self.flown,)
+        everything = (self.visited, *self.inspections.values(), *races, *self.formulas.values(), *flown)
         options = self.options
         self.found = explore_by(self.initial, everything, replace(options, edges=bool(self.temporal)))
         if self.found.times is not None and self.initial.setting.timing is not None:
@@ -237,6 +250,7 @@ class _Check:
         with bounded(replace(limits, spent=spent, overtaken=None)):
             verdicts = Verdicts(map(self.decide, self.properties))
             schedule = self.schedule()
+            corridors = self.corridors()
         return Report(
             verdicts=verdicts,
             configurations=self.found.size,
@@ -252,6 +266,7 @@ class _Check:
             reduced=tuple(map(str, options.reduce.names)) if options.reduce else (),
             allowed=self.found.allowed,
             schedule=schedule,
+            corridors=corridors,
             flights=self.deadlines.longest_flights() if self.deadlines else (),
         )
 
@@ -268,6 +283,15 @@ class _Check:
         except BoundMet as met:
             self.unscheduled = (f"the times of flights were not computed: {met.bound}",)
             return None
+
+    def corridors(self) -> Corridors | None:
+        """Return the ways of flights with their distances, if they were requested."""
+        if self.flown is None:
+            return None
+        from checker.properties.corridors import measured  # noqa: PLC0415 - geometry takes its time to load
+
+        assert self.initial.setting.regions is not None
+        return measured(self.initial.setting.regions, self.flown, complete=self.found.complete)
 
     def search(self) -> Exploration | None:
         """Search for stale observations with the monitor's memory, in the remaining time.

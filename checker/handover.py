@@ -32,6 +32,7 @@ class Compilation(NamedTuple):
     reductions: tuple[Reduction, ...]
     threads: int | None
     times: bool
+    ways: bool
 
     def is_done(self) -> bool:
         """Return whether the main loop of the check is in the cache of compiled loops."""
@@ -132,7 +133,7 @@ def _compile(job: Any) -> None:
     from checker.check import check  # noqa: PLC0415 - only in a process of its own
     from checker.engines.contract import Engine  # noqa: PLC0415 - the same
 
-    initial, properties, reductions, threads, times = job
+    initial, properties, reductions, threads, times, ways = job
     check(
         initial,
         properties,
@@ -141,6 +142,7 @@ def _compile(job: Any) -> None:
         reduce=reductions,
         threads=threads,
         times=times,
+        ways=ways,
     )
 
 

@@ -17,6 +17,7 @@ from semantics.state.brief import cut
 from semantics.state.signature import Name
 
 if TYPE_CHECKING:
+    from checker.properties.corridors import Corridors
     from checker.properties.critical_path import Leg
     from checker.properties.schedule import Schedule
 
@@ -143,6 +144,7 @@ class Report:
         reduced: The names of the reductions applied; counts are then those of the reduced exploration.
         allowed: The number of enabled transitions in the visited configurations, followed or not.
         schedule: The earliest and latest dates of its flights, if requested.
+        corridors: The ways of its flights with their lengths and distances, if requested.
         flights: The longest flight of each bigActor in seconds, where it is bounded, sorted by name.
     """
 
@@ -158,6 +160,7 @@ class Report:
     reduced: tuple[str, ...] = ()
     allowed: int = 0
     schedule: Schedule | None = None
+    corridors: Corridors | None = None
     flights: tuple[tuple[Name, float], ...] = ()
 
     def __repr__(self) -> str:

@@ -27,6 +27,8 @@ from physical.map_marks import (
     draw_polygon_mark,
     samples,
 )
+from physical.map_region_drawing import draw_regions, way_samples
+from physical.map_regions import NO_WAYS, MapWays
 from physical.map_scene import MapEntity, Scene, Sheet, area_of, arranged, scene_of, shows_coasts
 from physical.map_style import PAPER, QUIET, SEA, kind_colours
 from physical.map_view import bounds, degrees_text, tick_step, ticks
@@ -60,6 +62,7 @@ def draw_map(  # noqa: PLR0913 - each is one aspect of the map
     colours: Mapping[str, str] | None = None,
     channel_colours: Mapping[str, str] | None = None,
     within: Sequence[Geometry] = (),
+    ways: MapWays = NO_WAYS,
 ) -> Canvas:
     """Draw a map of a width and a height in points, with latitudes to the left and longitudes below.
 
@@ -72,10 +75,11 @@ def draw_map(  # noqa: PLR0913 - each is one aspect of the map
         channel_colours: The same for channels.
         within: The geometries that the view must show, such as all of a run, so that its maps are alike; by default the
             entities.
+        ways: The regions of entities, which a property is about.
     """
     in_order = sorted(entities, key=lambda entity: entity.name)
     inner = size[0] - LATITUDES, size[1] - LONGITUDES
-    scene, writing = composed(in_order, inner, colours or {}, (highlight, marked), within)
+    scene, writing = composed(in_order, inner, colours or {}, (highlight, marked), within, ways)
     canvas = Canvas(*size)
     canvas.put(_draw_sheet(scene, writing, channel_colours or {}), (LATITUDES, 0.0), clipped=True)
     canvas.rectangle((LATITUDES, 0.0), inner, FRAME)
@@ -95,6 +99,7 @@ def _draw_sheet(scene: Scene, writing: Writing, channel_colours: Mapping[str, st
     draw_ground(canvas, SEA if shows_coasts(sheet) else PAPER, scene.land)
     draw_grid(canvas, [x for x, _ in meridians], [y for y, _ in parallels])
     _draw_polygons(canvas, scene)
+    draw_regions(canvas, scene)
     _draw_channels(canvas, scene, channel_colours)
     for name, curve in _flights(scene):
         draw_flight(canvas, curve, scene.colour(name))
@@ -109,13 +114,16 @@ def composed(
     colours: Mapping[str, str],
     looks: tuple[Collection[str], Collection[str]],
     within: Sequence[Geometry],
+    ways: MapWays = NO_WAYS,
 ) -> tuple[Scene, Writing]:
     """Return the scene with the fewest folded markers in which all marker names fit beside them."""
-    plain = scene_of(entities, size, colours, *looks, within)
+    plain = scene_of(entities, size, colours, *looks, within, ways)
     for reach in REACHES:
         scene = arranged(plain, reach)
         curves = [curve for _, curve in (*_channels(scene), *_flights(scene))]
-        writing = writing_of(scene, [spot for curve in curves for spot in samples(curve)])
+        writing = writing_of(
+            scene, [*(spot for curve in curves for spot in samples(curve)), *way_samples(scene)]
+        )
         if all(scene.is_polygon(name) for name in writing.unnamed):
             break
     return scene, writing
@@ -198,7 +206,7 @@ def _flights(scene: Scene) -> list[tuple[str, Curve]]:
     return [
         (name, arc(scene.middle(name), bounds(scene.sheet.outline(destination)).centre, -0.1))
         for name in scene.near()
-        if (destination := scene.entities[name].destination) is not None
+        if name not in scene.ways.flying and (destination := scene.entities[name].destination) is not None
     ]
 
 

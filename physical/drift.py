@@ -189,11 +189,13 @@ class MetricPlane:
         room: The positions of a shape's centroid at which it is inside a place.
         put: The mover with its centroid at a spot.
         spot: The spot of a geometry's centroid.
+        position: The position of a spot.
     """
 
     room: Callable[[Geometry, Geometry], shapely.Geometry]
     put: Callable[[float, float], Geometry]
     spot: Callable[[Geometry], tuple[float, float]]
+    position: Callable[[float, float], PositionE7]
 
 
 def plane_of(mover: Geometry, within: Geometry, aboard: Aboard = NOTHING_ABOARD) -> MetricPlane:
@@ -217,7 +219,10 @@ def _plane(within: Geometry, shapes: Shapes) -> MetricPlane:
         return space if shape.is_point else room(space, shape)
 
     return MetricPlane(
-        room_of, lambda x, y: placed(mover, frame, x, y), lambda at: frame.metres(centroid(at).ring[0])
+        room_of,
+        lambda x, y: placed(mover, frame, x, y),
+        lambda at: frame.metres(centroid(at).ring[0]),
+        frame.position,
     )
 
 
@@ -230,10 +235,14 @@ def _affine(centre: PositionE7, near: shapely.Geometry) -> MetricPlane:
     def flat(place: Geometry) -> shapely.Geometry:
         return shapely.transform(beside(near, planar(place)), lambda at: (at - (east, north)) * (across, up))
 
+    def position(x: float, y: float) -> PositionE7:
+        return rounded((north + y / up) / E7, (east + x / across) / E7)
+
     return MetricPlane(
         lambda place, _: flat(place),
-        lambda x, y: intern((rounded((north + y / up) / E7, (east + x / across) / E7),)),
+        lambda x, y: intern((position(x, y),)),
         lambda at: flat(centroid(at)).coords[0],
+        position,
     )
 
 

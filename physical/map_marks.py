@@ -142,6 +142,11 @@ def draw_curve(canvas: Canvas, curve: Curve, colour: str) -> None:
 def draw_flight(canvas: Canvas, curve: Curve, colour: str) -> None:
     """Draw a dashed path with an arrow head at its end."""
     canvas.curve(curve, Paint(stroke=colour, width=1.4, dash=(5, 3)), LINES)
+    draw_arrow(canvas, curve, colour)
+
+
+def draw_arrow(canvas: Canvas, curve: Curve, colour: str) -> None:
+    """Draw an arrow head at the end of a curve."""
     canvas.polygon(_head(curve[1], curve[2]), Paint(colour), LINES)
 
 

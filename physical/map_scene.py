@@ -13,7 +13,8 @@ from physical.frame import Position
 from physical.land import ACCURACY, land_within
 from physical.map_crowds import HIDING, fanned, folded
 from physical.map_labels import Box, Spot
-from physical.map_style import Outline, kind_colours, kind_shapes
+from physical.map_regions import NO_WAYS, MapWays
+from physical.map_style import INK, Outline, kind_colours, kind_shapes
 from physical.map_view import Plane, bounds, focus, plane_of, view_of
 from physical.shape import Geometry
 
@@ -102,6 +103,11 @@ class Scene:
     land: Land
     spots: Mapping[str, Spot]
     members: Mapping[str, tuple[str, ...]]
+    ways: MapWays = NO_WAYS
+
+    def colour_of(self, name: str) -> str:
+        """Return the colour of an entity that may not be on the map."""
+        return self.colour(name) if name in self.entities else INK
 
     def colour(self, name: str) -> str:
         """Return the colour of an entity's kind."""
@@ -148,17 +154,18 @@ class Scene:
         return None if entity.name in self.outlines else entity.carried_by
 
 
-def scene_of(
+def scene_of(  # noqa: PLR0913, PLR0917 - each is one aspect of the map
     entities: Sequence[MapEntity],
     size: Spot,
     colours: Mapping[str, str],
     highlight: Collection[str],
     marked: Collection[str],
     within: Sequence[Geometry] = (),
+    ways: MapWays = NO_WAYS,
 ) -> Scene:
     """Return the scene of entities with unique names, on a sheet of this width and height in points.
 
-    The sheet shows `within`, or all entities if that is empty.
+    The sheet shows `within`, or all entities if that is empty, and the regions of `ways`.
     """
     known = {entity.name: entity for entity in entities}
     placed = {
@@ -171,7 +178,9 @@ def scene_of(
     plane = plane_of(shown)
     boxes = [bounds(plane.outline(geometry)) for geometry in shown]
     seen = focus(boxes)
-    view = view_of([boxes[each] for each in seen] or [Box(0, 0, 0, 0)], size[0] / size[1])
+    regions = [plane.metres(at) for at in ways.positions()]
+    around = [*(boxes[each] for each in seen), *([bounds(regions)] if regions else [])]
+    view = view_of(around or [Box(0, 0, 0, 0)], size[0] / size[1])
     sheet = Sheet(plane, view, *size)
     outlines = {name: sheet.outline(geometry) for name, geometry in placed.items()}
     far = {name for rank, name in enumerate(placed) if within or rank not in seen}
@@ -189,6 +198,7 @@ def scene_of(
         _land(sheet),
         {},
         {},
+        ways,
     )
     return arranged(scene, HIDING)
 

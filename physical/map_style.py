@@ -17,6 +17,9 @@ COAST: Final = "#b9ae92"
 HALO: Final = "#e4572e"
 """The colour behind highlighted entities."""
 
+BROKEN: Final = "#c0281c"
+"""The colour of what breaks a property."""
+
 MARK: Final = "#1f2933"
 """The colour of the dashed outline of marked entities."""
 

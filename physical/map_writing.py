@@ -26,6 +26,7 @@ from physical.map_marks import (
     draw_pointer,
     draw_scale,
 )
+from physical.map_region_drawing import draw_spans, span_boxes
 from physical.map_scene import Scene, Sheet, area_of
 from physical.map_style import INK, QUIET, darker
 from physical.map_view import bounds, scale_length
@@ -60,6 +61,7 @@ class Writing:
     pointers: Mapping[str, tuple[Spot, Spot]]
     markers: tuple[Box, ...]
     scale: Box
+    spans: tuple[Box, ...]
     notes: tuple[tuple[Box, Sequence[Line], tuple[str, ...]], ...]
     unnamed: tuple[str, ...]
 
@@ -74,8 +76,9 @@ def writing_of(scene: Scene, lines: Sequence[Spot]) -> Writing:
     length, text = _scale(scene.sheet)
     size = (NORTH + max(length, text_width(text, 7.5)), 30.0 if scene.land else 22.0)
     scale = _corner(scene.sheet, size, markers)
-    absent = _note(scene, ["not in P:", *_listed(scene.absent)], scene.absent, [*markers, scale])
-    taken = [*markers, scale, *(box for box, _, _ in absent)]
+    spans = span_boxes(scene, [*markers, scale])
+    absent = _note(scene, ["not in P:", *_listed(scene.absent)], scene.absent, [*markers, scale, *spans])
+    taken = [*markers, scale, *spans, *(box for box, _, _ in absent)]
     polygons = [scene.outlines[name] for name in scene.near() if scene.is_polygon(name)]
     borders = [spot for outline in polygons for spot in _along(outline)]
     names = sorted([*scene.near(), *scene.far], key=lambda name: (_freedom(scene, name), name))
@@ -88,11 +91,12 @@ def writing_of(scene: Scene, lines: Sequence[Spot]) -> Writing:
     counts = [f"{kind} ×{count}" for kind, count in sorted(kinds.items())]
     words = ["no room to name:", *_listed(unnamed if len(unnamed) <= FEW else counts)]
     folded = _note(scene, words, unnamed, [*taken, *boxes.values()])
-    return Writing(blocks, wanted, boxes, pointers, markers, scale, (*absent, *folded), unnamed)
+    return Writing(blocks, wanted, boxes, pointers, markers, scale, spans, (*absent, *folded), unnamed)
 
 
 def write_labels(canvas: Canvas, scene: Scene, writing: Writing) -> None:
-    """Write all names, the scale bar and the notes, so that no two overlap."""
+    """Write all names, the scale bar, the metres of lines and the notes, so that no two overlap."""
+    draw_spans(canvas, scene, writing.spans)
     draw_scale(canvas, writing.scale, *_scale(scene.sheet), COAST_NOTE if scene.land else "")
     for box, lines_of_note, names in writing.notes:
         draw_block(canvas, box, lines_of_note, names=names)

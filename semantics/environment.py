@@ -1,8 +1,8 @@
 """The environment section: the effects of `env : P'` and `say`, clause by clause."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
-from typing import Any
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
 
 from semantics.behaviours.values import Value, show
 from semantics.state.cell_values import Cell, Changes
@@ -14,6 +14,9 @@ from semantics.state.physical_model import (
     left_cell,
 )
 from semantics.state.signature import Name
+
+if TYPE_CHECKING:
+    from physical import DriftWithin
 
 Effect = tuple[str, Changes]
 """A description of an event, and its writes to P."""
@@ -30,6 +33,7 @@ class Drifts:
         next: The possible successors of each placement; from any other placement, those in `first`.
         first: The possible successors of the initial placement.
         within: Whether the placements represent a whole place, so that the entity may be anywhere in it.
+        arrangement: The places that cut this drift into faces, for regions; None if it is not within a place.
     """
 
     entity: Name
@@ -38,6 +42,7 @@ class Drifts:
     next: tuple[tuple[int, ...], ...]
     first: tuple[int, ...]
     within: bool = False
+    arrangement: "DriftWithin | None" = field(default=None, compare=False, repr=False)
 
     @property
     def words(self) -> tuple[str, ...]:

@@ -173,6 +173,9 @@ class BuildWorld(BuildTiming):
     def arrives(self, c: Children) -> s.Arrives:
         return s.Arrives(name(c[0]), span=cover(c))
 
+    def strays(self, c: Children) -> s.Strays:
+        return s.Strays(name(c[0]), c[4], span=cover(c))
+
     def place_name(self, c: Children) -> s.Name:
         return name(c[0])
 
@@ -285,6 +288,18 @@ class BuildWorld(BuildTiming):
 
     def inside(self, c: Children) -> s.Inside:
         return s.Inside(name(c[1]), name(c[4]), c[2] is not None, c[0] is not None, span=cover(c))
+
+    def possibly_in(self, c: Children) -> s.PossiblyIn:
+        return s.PossiblyIn(name(c[1]), name(c[3]), span=cover(c))
+
+    def surely_in(self, c: Children) -> s.SurelyIn:
+        return s.SurelyIn(name(c[1]), name(c[3]), span=cover(c))
+
+    def apart_from(self, c: Children) -> s.ApartFrom:
+        return s.ApartFrom(agent(c[0]), agent(c[8]), c[3], c[5], span=cover(c))
+
+    def within_range_of(self, c: Children) -> s.WithinRangeOf:
+        return s.WithinRangeOf(agent(c[0]), agent(c[4]), c[2], span=cover(c))
 
     def linked_to(self, c: Children) -> s.LinkedTo:
         return s.LinkedTo(name(c[1]), name(c[3]), c[0] is not None, span=cover(c))

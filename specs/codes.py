@@ -506,6 +506,27 @@ class Code(Enum):
         """A mission without bigActors can be shown, and recordings can be replayed in its places, but a verdict on it
         would be empty.""",
     )
+
+    BAD_RANGE = (
+        "LS616",
+        "length out of bounds",
+        """A distance between entities is above 0 m. The greatest distance of a vehicle from its way (`strays`) is at
+        most 100 km, and at least the diameter of the circles that it flies.""",
+    )
+
+    NOT_A_PLACE = (
+        "LS617",
+        "place without an inside",
+        """`possibly x in p` and `surely x in p` ask for a place p: an entity with an area, or one that carries x. Of an
+        entity that is a point ask for a distance: `x at least 50 m from p`, `x within 3 km of p`.""",
+    )
+
+    NOT_UNDER_WAY = (
+        "LS618",
+        "region of control that takes no time",
+        """`possibly`, `surely`, `at least` and `within` are about ways, and with `control atomic` nothing is under way.
+        Write `control timed`.""",
+    )
     # --- LS7: warnings
     NOTHING_QUANTIFIED = (
         "LS701",
@@ -570,7 +591,8 @@ class Code(Enum):
         "LS709",
         "flight that may cross a forbidden place",
         """An invariant keeps a vehicle out of a place, and the straight way of one of its flights may lead through it.
-        The invariant does not cover a vehicle in transit. Lead the flight around by VIA, or in several moves.""",
+        `actually` does not cover a vehicle in transit: ask for `not possibly uav0 in place0`. Or lead the flight around
+        by VIA, or in several moves.""",
     )
 
     HIDES_AN_ENTITY = (
@@ -578,6 +600,13 @@ class Code(Enum):
         "pattern that takes anything for an entity's name",
         """A name in a pattern is a new variable, which takes any value. One that is called like an entity hides it in
         the case. `=spill` compares; another name takes any value.""",
+    )
+
+    ONE_POINT = (
+        "LS711",
+        "two vehicles that may be sent to one point",
+        """In a mission with properties about ways, two vehicles may be sent to one place, and so to one point. Neither
+        their altitudes nor a property part them: `uav0 at least 50 m from uav1`.""",
     )
 
     # --- LS8: timing

@@ -252,6 +252,27 @@ def _(node: s.Inside) -> str:
 
 
 @write.register
+def _(node: s.PossiblyIn) -> str:
+    return f"possibly {write(node.entity)} in {write(node.place)}"
+
+
+@write.register
+def _(node: s.SurelyIn) -> str:
+    return f"surely {write(node.entity)} in {write(node.place)}"
+
+
+@write.register
+def _(node: s.ApartFrom) -> str:
+    height = f" or {write(node.height)} up" if node.height else ""
+    return f"{write(node.entity)} at least {write(node.distance)}{height} from {write(node.other)}"
+
+
+@write.register
+def _(node: s.WithinRangeOf) -> str:
+    return f"{write(node.entity)} within {write(node.distance)} of {write(node.other)}"
+
+
+@write.register
 def _(node: s.LinkedTo) -> str:
     return f"{_whose(node.actually)}{write(node.entity)} linked {write(node.other)}"
 

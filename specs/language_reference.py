@@ -28,6 +28,30 @@ once. `bigactors fmt` writes a mission in the layout used here. The examples are
 `endurance`, which ships.
 """
 
+REGIONS: Final = """\
+## Regions
+
+The *region* of an entity is all points where it may be while a configuration lasts. `possibly`, `surely`, `at least`
+and `within` ask for regions, in missions with `control timed`. Rules never do: configurations and runs are the same.
+
+- Where the mission or a clause puts an entity, and no control could have, its region is that point or shape.
+- An entity that drifts within a place may be anywhere in its face of that place.
+- A vehicle that a control has left in a place may be anywhere in that place, since it still flies to its waypoint.
+- A vehicle on its way may be on every shortest line from where it was, by its VIA, to its destination: it may begin
+  and end anywhere in these places. If one of them may move, it may be on a line between any two points of them.
+- With `strays at most D`, a vehicle keeps within D of the shortest lines between its waypoints, and of its last one.
+  Without it, D is the diameter of its circles (`circles 80 m` of radius), or 0, and a way is as wide as its places.
+- Cargo has the region of its carrier.
+- The altitudes of an entity are its own band, from take-off to landing, and all altitudes without a band. On the way
+  from or to a carrier, the band also has the altitudes of that.
+
+In doubt `possibly` is true, and the other three are false. The doubt is 0.5 m within 500 km of the middle of what is
+compared, and 5 m within 1,000 km. Farther regions, and regions over a pole, are refused. Places, and entities whose
+position is certain, are compared exactly.
+
+Two vehicles that were sent to one place are not apart, unless their altitudes are: both go to one point.
+"""
+
 PLACES: Final = """\
 ## A file of places
 
@@ -209,6 +233,7 @@ check {
   endurance
   within 40 min "home": ended patrol and actually uav0 in airfield0
   within 5 min "answered": pending OBS patrol leads to not pending OBS patrol
+  invariant "in range": uav0 within 60 km of gcs0
   time "in the north": actually uav0 in north0
 }
 """
@@ -233,6 +258,8 @@ def language_reference() -> str:
             parts += ["`signature standard` declares:\n", _fenced(STANDARD, "mission")]
         if heading == "Timing":
             parts += [f"Example:\n\n<!-- frame: {TIMED_FRAME} -->", _fenced(TIMED_EXAMPLE, "mission")]
+        if heading == "Formulas":
+            parts += [REGIONS]
         if heading in EXAMPLES:
             parts += ["Example:\n", "<!-- frame: whole.mission -->", _fenced(EXAMPLES[heading], "mission")]
     reserved = ", ".join(f"`{word}`" for word in sorted(RESERVED))

@@ -341,6 +341,7 @@ _PIECES: Final[dict[type[s.Node], Callable[..., list[str]]]] = {
     s.Vanishes: lambda node: [f"{write(node.entity)} vanishes"],
     s.Says: _says,
     s.Arrives: lambda node: [f"{write(node.entity)} arrives"],
+    s.Strays: lambda node: [f"{write(node.vehicle)} strays at most {write(node.distance)}"],
     **TIMING_PIECES,
     s.OnBroken: lambda node: [f"on broken assumption: {node.fallback}"],
     s.TimeLimit: lambda node: [_time_limit(node)],

@@ -57,7 +57,10 @@ _GROUPS: Final[tuple[tuple[str, str, frozenset[str], frozenset[str]], ...]] = (
     ),
 )
 _FORMS: Final = (
-    (frozenset({"directly", "linked"}), "a claim is written uav0 in place0, uav0 linked wifi or a.x == 3"),
+    (
+        frozenset({"directly", "linked"}),
+        "a claim is written uav0 in place0, uav0 linked wifi, uav0 at least 50 m from uav1 or a.x == 3",
+    ),
     (
         frozenset({"arrives"}),
         "an event is written wifi drops, uav0 leaves wifi, boat0 drifts within place0, boat0 appears at place0",

@@ -90,7 +90,12 @@ LIBRARIES = {
         "adapters/camera/",
         "adapters/ros/position_messages.py",  # arrays of ROS's messages
         "adapters/simulated/camera.py",
-        "physical/extents.py",  # arrays of shapely's coordinates
+        "physical/extents.py",  # arrays of shapely's coordinates, here and below
+        "physical/geodesic_areas.py",
+        "physical/geodesic_distances.py",
+        "physical/gnomonic.py",
+        "physical/region_outlines.py",
+        "physical/resting_regions.py",
     ),
     "cv2": ("adapters/camera/libraries.py",),
     "rasterio": ("adapters/camera/libraries.py",),

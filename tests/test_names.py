@@ -38,6 +38,7 @@ CLASSES = {
         "Outcome": "adapters/live adapters/mavlink checker",
         "Place": "adapters/recording physical",
         "Progress": "adapters/mavlink checker/engines",
+        "Region": "adapters/camera physical",
         "Signature": "bigraphs semantics/state",
         "Source": "adapters/camera specs",
         "Transition": "bigraphs semantics/state",

@@ -8,7 +8,7 @@ from typing import Final
 
 from bigactors.mistakes import suggestion
 
-FORMATS: Final = ("json", "junit", "sarif", "github")
+FORMATS: Final = ("json", "junit", "sarif", "github", "geojson")
 """The formats of `check --output`; `github` stands for the annotations of GitHub Actions."""
 
 

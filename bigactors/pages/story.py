@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from itertools import chain, islice
 from typing import Final
 
-from bigactors.pictures import Panel, Panels
+from bigactors.pictures import Panel, Panels, RegionMarks
 from checker import Trace
 from checker.reports.lanes import Lanes, LaneStep, Repetition, Row, bounded, folded, lanes_of_trace
 from semantics.state.configuration import Configuration
@@ -37,6 +37,7 @@ class Story:
         details: More lines about the claim.
         times: The time of each step in seconds; empty if unknown.
         unfolded: Whether repeated steps have a row each.
+        marks: The regions that the maps show.
     """
 
     title: str
@@ -49,6 +50,7 @@ class Story:
     details: tuple[str, ...] = ()
     times: tuple[float, ...] = ()
     unfolded: bool = False
+    marks: RegionMarks | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -154,7 +156,7 @@ def _held(rows: Sequence[Row], looks: Sequence[int]) -> Iterable[int]:
 
 def _frames(story: Story, lanes: Lanes, held: Sequence[int], looks: Sequence[int]) -> tuple[PageFrame, ...]:
     configurations, counts = story.trace.configurations, Counter(looks)
-    panels = Panels.of(configurations, min(story.drawn, MOST_PICTURES))
+    panels = Panels.of(configurations, min(story.drawn, MOST_PICTURES), story.marks)
     frames = {}
     for number in sorted(held, key=lambda number: abs(number - (story.start or len(looks)))):
         c, before = configurations[number], configurations[number - 1] if number else None

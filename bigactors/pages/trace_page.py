@@ -9,12 +9,12 @@ from typing import Final
 
 from bigactors.pages.markup import element, text
 from bigactors.pages.story import PageContent, PageFrame, Story, telling
-from bigactors.pictures import Look, Panel, channels_of, look_of, shown_names
+from bigactors.pictures import Look, Panel, channels_of, look_of, shown_names, way_entries
 from bigraphs import Bigraph, draw_text
 from bigraphs.drawing import HIGHLIGHT
 from checker.properties.race_steps import RaceSteps
 from checker.reports.lanes import Lanes, LaneStep, Repetition, Row, lapses, steps_of
-from physical.map_style import MARK
+from physical.map_style import BROKEN, MARK, QUIET
 from physical.wordings import counted
 from semantics.state.printing import print_agent
 from semantics.timing.dates import lapse_text
@@ -235,7 +235,7 @@ def _stage(told: PageContent) -> str:
             ),
             id="words",
         ),
-        _legend(frames),
+        _legend(told),
         class_="stage",
         aria_label="One configuration",
     )
@@ -330,7 +330,8 @@ def _list(name: str, gloss: str, lines: Sequence[str], known: set[str]) -> str:
 # --- the legend -----------------------------------------------------------------------------------------------
 
 
-def _legend(frames: Sequence[PageFrame]) -> str:
+def _legend(told: PageContent) -> str:
+    frames = told.frames
     looks = [look_of(frame.c, frame.before) for frame in frames]
     kinds = sorted({frame.c.setting.kind(name) for frame in frames for name in shown_names(frame.c)})
     channels = sorted({channel for frame in frames for channel in channels_of(frame.c)})
@@ -342,7 +343,15 @@ def _legend(frames: Sequence[PageFrame]) -> str:
     ]
     keys = "keys: ← → one step, j k one row, Home End first and last, space plays, / finds"
     hint = element("li", text(keys), class_="hint")
-    return element("ul", *entries, hint, class_="legend")
+    return element("ul", *entries, *_way_entries(told), hint, class_="legend")
+
+
+def _way_entries(told: PageContent) -> Iterator[str]:
+    """Yield the entries for regions that some map shows."""
+    marks = told.story.marks
+    ways = [] if marks is None else [marks.ways(frame.c) for frame in told.frames]
+    for look, words in dict.fromkeys(entry for each in ways for entry in way_entries(each)):
+        yield _entry(words, look, {"breach": BROKEN}.get(look, QUIET))
 
 
 def _channel_colour(channel: str, looks: Sequence[Look]) -> str:
@@ -356,5 +365,11 @@ def _entry(words: str, look: str, colour: str) -> str:
         "glow": f'<circle cx="8" cy="6" r="5.5" fill="{colour}" fill-opacity=".35"/>',
         "mark": f'<rect x="2" y="1.5" width="12" height="9" rx="2" fill="none" stroke="{colour}" '
         'stroke-width="1.5" stroke-dasharray="3 2"/>',
+        "region": f'<rect x="1" y="1.5" width="14" height="9" rx="2" fill="{colour}" fill-opacity=".2" '
+        f'stroke="{colour}" stroke-width="1.2"/>',
+        "breach": f'<rect x="1" y="1.5" width="14" height="9" rx="2" fill="{colour}" fill-opacity=".4" '
+        f'stroke="{colour}" stroke-width="1.2"/>',
+        "limit": f'<rect x="1" y="1.5" width="14" height="9" rx="2" fill="none" stroke="{colour}" '
+        'stroke-width="1.2" stroke-dasharray="1.5 2"/>',
     }
     return element("li", f'<svg viewBox="0 0 16 12" aria-hidden="true">{shapes[look]}</svg>', text(words))

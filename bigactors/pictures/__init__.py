@@ -3,8 +3,9 @@
 Beliefs, the actual world and changes come from `semantics`; nothing is decided here.
 """
 
-from bigactors.pictures.configuration_picture import Look, draw_configuration, look_of
+from bigactors.pictures.configuration_picture import Look, draw_configuration, look_of, way_entries
 from bigactors.pictures.panels import Panel, Panels, logical_picture
+from bigactors.pictures.region_marks import RegionMarks, marks_of
 from bigactors.pictures.scene import channels_of, shown_names
 from bigactors.pictures.trace import draw_overview, draw_trace
 
@@ -12,11 +13,14 @@ __all__ = [
     "Look",
     "Panel",
     "Panels",
+    "RegionMarks",
     "channels_of",
     "draw_configuration",
     "draw_overview",
     "draw_trace",
     "logical_picture",
     "look_of",
+    "marks_of",
     "shown_names",
+    "way_entries",
 ]

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from bigactors.pictures.page import Page
+from bigactors.pictures.region_marks import RegionMarks
 from bigactors.pictures.scene import (
     Palette,
     changed_names,
@@ -20,7 +21,8 @@ from bigraphs.drawing import draw_layout
 from bigraphs.layout import layout
 from physical.drawing import draw_map
 from physical.map_marks import draw_halo, draw_icon, draw_mark
-from physical.map_style import INK, QUIET, SQUARE, kind_shapes
+from physical.map_regions import NO_WAYS, MapWays
+from physical.map_style import BROKEN, INK, QUIET, SQUARE, kind_shapes
 from physical.svg import Canvas, Paint, Picture, shortened, text_width
 from semantics.state.configuration import Configuration
 from semantics.state.printing import print_agent
@@ -40,6 +42,13 @@ ROW: Final = 15.0
 MOST_ROWS: Final = 12
 LEGEND_ROW: Final = 17.0
 
+WAYS: Final = {
+    "region": Paint("#dfe3e7", QUIET, 0.9),
+    "breach": Paint("#ecbab6", BROKEN, 1.1),
+    "limit": Paint("#fff", INK, 0.9, dash=(2, 2)),
+}
+"""The looks of regions in the legend."""
+
 
 @dataclass(frozen=True, slots=True)
 class LegendEntry:
@@ -52,17 +61,25 @@ class LegendEntry:
 
 @dataclass(frozen=True, slots=True)
 class Look:
-    """The look of a configuration: its colours, the glowing names (changed) and the marked names (L and P differ)."""
+    """The look of a configuration: its colours, and what is marked.
+
+    Attributes:
+        palette: The colours of kinds and of channels.
+        glowing: The names that changed.
+        marked: The names on which L and P differ.
+        ways: The regions that a property is about.
+    """
 
     palette: Palette
     glowing: frozenset[Name]
     marked: frozenset[Name]
+    ways: MapWays = NO_WAYS
 
 
-def look_of(c: Configuration, before: Configuration | None) -> Look:
-    """Return the look of a configuration after another."""
+def look_of(c: Configuration, before: Configuration | None, marks: RegionMarks | None = None) -> Look:
+    """Return the look of a configuration after another, with the marks of regions."""
     glowing = frozenset() if before is None else changed_names(before, c)
-    return Look(palette_of(c), glowing, differing(c))
+    return Look(palette_of(c), glowing, differing(c), NO_WAYS if marks is None else marks.ways(c))
 
 
 def draw_configuration(
@@ -70,13 +87,14 @@ def draw_configuration(
     *,
     title: str | None = None,
     changed: Configuration | None = None,
+    marks: RegionMarks | None = None,
 ) -> Picture:
     """Return the picture of a configuration.
 
     Entities on which L and A(P) differ have a dashed outline in both. With `changed`, the configuration before, the
-    changes since then glow.
+    changes since then glow. With `marks`, the map shows where entities may be.
     """
-    c, look = configuration, look_of(configuration, changed)
+    c, look = configuration, look_of(configuration, changed, marks)
     legend = _legend_rows(_entries(c, look))
     rows = max(1, _shown(len(c.alpha.names())), _shown(len(c.eta.all())))
     top = MARGIN + (26.0 if title else 0.0)
@@ -150,6 +168,7 @@ def _draw_physical(page: Page, c: Configuration, top: float, look: Look) -> None
         marked=look.marked,
         colours=look.palette.kinds,
         channel_colours=look.palette.channels,
+        ways=look.ways,
     )
     page.put(canvas, (left, top + 18.0))
 
@@ -168,7 +187,17 @@ def _entries(c: Configuration, look: Look) -> list[LegendEntry]:
         for channel in channels_of(c)
     ]
     entries += [LegendEntry("changed", "changed in this step")] if look.glowing else []
-    return entries + ([LegendEntry("marked", "L and P differ")] if look.marked else [])
+    entries += [LegendEntry("marked", "L and P differ")] if look.marked else []
+    return entries + [LegendEntry(name, words) for name, words in way_entries(look.ways)]
+
+
+def way_entries(ways: MapWays) -> list[tuple[str, str]]:
+    """Return the entries of a legend for regions: each look with its words."""
+    return [
+        *([("region", "where it may be")] if ways.regions else []),
+        *([("breach", "where it breaks the property")] if ways.breaches else []),
+        *([("limit", "the range")] if ways.limits else []),
+    ]
 
 
 def _legend_rows(entries: list[LegendEntry]) -> list[list[tuple[float, LegendEntry]]]:
@@ -197,6 +226,8 @@ def _draw_legend_row(page: Page, c: Configuration, row: list[tuple[float, Legend
             page.line([(x, at[1]), (x + 14, at[1])], Paint(stroke=entry.colour, width=1.6))
         elif entry.look == "changed":
             draw_halo(page, at, 6.0)
+        elif entry.look in WAYS:
+            page.rectangle((x, y - 7.5), (14.0, 9.0), WAYS[entry.look], radius=2.5)
         else:
             draw_mark(page, at, 5.5)
         page.write(x + 19.0, y, entry.name, 8.0, ink=QUIET)

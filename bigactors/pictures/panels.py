@@ -6,6 +6,7 @@ from typing import Final
 
 from bigactors.pictures.configuration_picture import Look, draw_logical, look_of
 from bigactors.pictures.page import Page
+from bigactors.pictures.region_marks import RegionMarks
 from bigactors.pictures.scene import map_entities
 from bigraphs.bigraph import Bigraph
 from physical.drawing import MapEntity, draw_map
@@ -36,21 +37,24 @@ class Panels:
     Attributes:
         within: All positions that must fit into the maps of the run.
         most: The most pictures of each model.
+        marks: The regions that the maps of P show.
         logicals: The pictures of L, by their content.
         physicals: The maps of P, by their content.
     """
 
     within: tuple[Geometry, ...]
     most: int
+    marks: RegionMarks | None = None
     logicals: dict[Hashable, Panel] = field(default_factory=dict)
     physicals: dict[Hashable, Panel] = field(default_factory=dict)
 
     @staticmethod
-    def of(configurations: Sequence[Configuration], most: int) -> "Panels":
+    def of(configurations: Sequence[Configuration], most: int, marks: RegionMarks | None = None) -> "Panels":
         """Return the panels of a run before anything is drawn."""
         entities = (entity for c in dict.fromkeys(configurations) for entity in map_entities(c))
         seen = (place for entity in entities for place in _places(entity))
-        return Panels(tuple(dict.fromkeys(seen)), most)
+        marked = () if marks is None else marks.positions(configurations)
+        return Panels(tuple(dict.fromkeys((*seen, *marked))), most, marks)
 
     def logical(self, c: Configuration, before: Configuration | None) -> Panel | None:
         """Return the picture of L with changes since the configuration before glowing; None once there are `most`."""
@@ -62,8 +66,8 @@ class Panels:
 
     def physical(self, c: Configuration, before: Configuration | None) -> Panel | None:
         """Return the map of P with changes since the configuration before glowing; None once there are `most`."""
-        look, entities = look_of(c, before), map_entities(c)
-        shown = (entities, look.glowing, look.marked)
+        look, entities = look_of(c, before, self.marks), map_entities(c)
+        shown = (entities, look.glowing, look.marked, look.ways)
         if shown not in self.physicals and len(self.physicals) < self.most:
             self.physicals[shown] = Panel(f"P{len(self.physicals)}", self._map(entities, look))
         return self.physicals.get(shown)
@@ -78,6 +82,7 @@ class Panels:
             colours=look.palette.kinds,
             channel_colours=look.palette.channels,
             within=self.within,
+            ways=look.ways,
         )
         page.put(drawn, (0.0, INSET))
         return page.picture("P")

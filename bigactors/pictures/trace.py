@@ -12,6 +12,7 @@ from typing import Final
 
 from bigactors.pictures.configuration_picture import draw_configuration
 from bigactors.pictures.page import Page, wrapped
+from bigactors.pictures.region_marks import RegionMarks
 from checker.properties.race_steps import RaceSteps
 from checker.reports.lanes import Lanes, LaneStep, Repetition, bounded, folded, lanes_of, lapses, steps_of
 from physical.map_style import INK, QUIET
@@ -95,12 +96,13 @@ def draw_trace(  # noqa: PLR0913 - all but three are optional, and passed by nam
     loop: int | None = None,
     moments: Sequence[int] = (),
     race: RaceSteps | None = None,
+    marks: RegionMarks | None = None,
 ) -> tuple[Path, ...]:
     """Write `c00.svg`, `c01.svg`, ... and the overview `trace.svg` into a directory, and return their paths.
 
     Each label names the step between two configurations, so there is one label fewer. `loop` is the number of the
     configuration to which the run returns for ever; `moments` are the dates of the steps in milliseconds; the steps of
-    `race` are marked.
+    `race` are marked. The maps show `marks`.
 
     Raises:
         OSError: A file cannot be written.
@@ -114,7 +116,7 @@ def draw_trace(  # noqa: PLR0913 - all but three are optional, and passed by nam
     captions = ["", *(f"{word}{label}" for word, label in zip(words, labels, strict=True))]
     for name, before, c, caption in zip(names, befores, configurations, captions, strict=True):
         heading = " ".join(part for part in (title, Path(name).stem, caption) if part)
-        draw_configuration(c, title=heading, changed=before).save(folder / name)
+        draw_configuration(c, title=heading, changed=before, marks=marks).save(folder / name)
     overview = folder / "trace.svg"
     lanes = lanes_of(configurations, labels, loop, moments, race)
     draw_overview(lanes, title=title, links=names[1:]).save(overview)

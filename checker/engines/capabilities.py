@@ -30,6 +30,8 @@ class Feature(Enum):
     SPILL = "--spill"
     MEMORY = "--max-memory"
     PARANOID = "--paranoid"
+    WAYS = "--ways"
+    ATOMIC = "--control atomic"
     RUNS = "ltl, ctl, progress"
     MODEL = "a model of your own"
 
@@ -115,6 +117,13 @@ UNSUPPORTED: Final = (
     _P(_F.MODEL, _F.POR, _W.DESIGN, "the reduction 'por' is made for the rules of missions", "leave reduce out"),
     _P(_F.MODEL, _F.SYMMETRY, _W.DESIGN, "the reduction 'symmetry' is made for the rules of missions",
         "leave reduce out"),
+    _P(_F.WAYS, _F.ATOMIC, _W.MATHEMATICS,
+        "ways are those of flights, and with 'control atomic' nothing is under way",
+        "check it with --control timed"),
+    _P(_F.WAYS, _F.POR, _W.MATHEMATICS,
+        "ways are compared in every configuration, and 'por' leaves configurations out", _REDUCE),
+    _P(_F.WAYS, _F.SYMMETRY, _W.MATHEMATICS,
+        "ways are those of each vehicle, and 'symmetry' visits one of several alike", _REDUCE),
     _P(_F.THREADS, _F.POR, _W.IDLE, "the search runs on one thread", ""),
     _P(_F.THREADS, _F.TIMING, _W.IDLE, "the search runs on one thread", ""),
     _P(_F.RUNS, _F.POR, _W.UNDECIDED, "X, enabled, fairness and progress depend on the order of "
@@ -148,7 +157,7 @@ class CombinationError(EngineError):
         self.remedy = unmet.remedy
 
 
-def features(
+def features(  # noqa: PLR0913 - each is one aspect of an exploration
     limits: Limits,
     keeping: Keeping | None,
     reductions: Iterable[Reduction],
@@ -156,6 +165,8 @@ def features(
     cluster: Cluster | None,
     threads: int | None,
     timing: bool = False,
+    ways: bool = False,
+    atomic: bool = False,
 ) -> frozenset[Feature]:
     """Return the features of an exploration, without its engine.
 
@@ -166,12 +177,16 @@ def features(
         cluster: Its workers, if they are given.
         threads: Its threads, if they are given.
         timing: Whether the mission has a section `timing`.
+        ways: Whether the report lists the ways of flights.
+        atomic: Whether control takes no time in the mission.
     """
     kept = keeping or Keeping()
     asked = {
         Feature.WORKERS: cluster is not None,
         Feature.THREADS: threads is not None,
         Feature.TIMING: timing,
+        Feature.WAYS: ways,
+        Feature.ATOMIC: atomic,
         Feature.CHECKPOINT: kept.folder is not None,
         Feature.RESUME: kept.resumed,
         Feature.SPILL: limits.spill is not None,

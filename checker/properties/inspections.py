@@ -318,7 +318,12 @@ class Invariant(Inspection):
 
 def _names_told(formula: Proposition, c: Configuration) -> tuple[str, ...]:
     names = ", ".join(f"{variable} = {name}" for variable, name in counterexample_names(formula, c))
-    return (f"where {names}",) if names else ()
+    told = (f"where {names}",) if names else ()
+    if c.setting.regions is None:
+        return told
+    from semantics.regions.region_report import region_lines  # noqa: PLC0415 - geometry takes its time to load
+
+    return (*told, *region_lines(formula, c))
 
 
 class Reachability(Inspection):

@@ -36,7 +36,8 @@ Where = TypeVar("Where", int, Cell)
 WORD = re.compile(r"[^\W\d]\w*")
 
 FIXED = (
-    *(int, Truth, Text, Geometry, Extent, Placed, Adrift, All, NodeVariable, PlaceVariable, LinkVariable),
+    *(int, float, Truth, Text, Geometry, Extent, Placed, Adrift, All),
+    *(NodeVariable, PlaceVariable, LinkVariable),
     type(None),
 )
 """Types without names."""
@@ -134,7 +135,8 @@ def _each_field(renaming: Renaming, value: Any) -> Any:
     if not is_dataclass(value) or isinstance(value, type):
         raise TypeError(f"a renaming does not know {type(value).__name__}")
     make: Callable[..., Any] = type(value)
-    return make(*(renaming.value(getattr(value, each.name)) for each in fields(value)))
+    held = ((getattr(value, each.name), each.compare) for each in fields(value))
+    return make(*(renaming.value(part) if counts else part for part, counts in held))
 
 
 def _sorted(renaming: Renaming, names: tuple[str, ...]) -> tuple[str, ...]:
@@ -192,7 +194,7 @@ def spelled(value: Any) -> str:
     if isinstance(value, tuple) and not hasattr(value, "_fields"):
         return "(" + ",".join(map(spelled, value)) + ")"
     if is_dataclass(value) and not isinstance(value, Geometry):
-        inner = ",".join(spelled(getattr(value, each.name)) for each in fields(value))
+        inner = ",".join(spelled(getattr(value, each.name)) for each in fields(value) if each.compare)
         return f"{type(value).__name__}({inner})"
     return repr(value)
 

@@ -59,6 +59,9 @@ class Automorphisms:
         if frozenset(map(renaming.name, self.c.setting.arriving)) != self.c.setting.arriving:
             raise Unlike("of one flights arrive, of the other not")
         check_times(self.c, renaming)
+        strays = self.c.setting.strays
+        if any(strays.get(one) != strays.get(other) for one, other in renaming.names.items()):
+            raise Unlike("one strays farther from its way than the other")
         return renaming
 
     # --- kinds and names --------------------------------------------------------------------------------------

@@ -23,6 +23,14 @@ from semantics.properties.propositions import (
     atoms_of,
     is_true_of,
 )
+from semantics.properties.region_atoms import (
+    ApartFrom,
+    PossiblyIn,
+    RegionAtom,
+    SurelyIn,
+    WithinRangeOf,
+    operands,
+)
 from semantics.properties.temporal import Steps
 from semantics.state.agents import code_cell, host_cell, is_over, store_cell
 from semantics.state.cell_values import AGENTS, Cell, Question, has, is_something
@@ -82,6 +90,8 @@ class Eyes:
         match atom:
             case Inside(node, _, actually):
                 yield from self._places(node, actually)
+            case PossiblyIn() | SurelyIn() | ApartFrom() | WithinRangeOf():
+                yield from self._regions(atom)
             case LinkedWith(node, other, actually):
                 yield from self._links({node, other}, actually)
             case Present(node):
@@ -112,6 +122,18 @@ class Eyes:
             yield from (VisiblePart(placement_cell(each)) for each in sorted(self.bounds.around(node)))
         else:
             yield from (VisiblePart(parent_cell(each)) for each in sorted({node, *self.bounds.above(node)}))
+
+    def _regions(self, atom: RegionAtom) -> Iterator[VisiblePart]:
+        """Yield the placements of two entities and of all that may carry them, and the flights that move them."""
+        from semantics.regions.region_truth import plans_of  # noqa: PLC0415 - geometry takes its time to load
+
+        facts = self.bounds.setting.regions
+        if facts is None:
+            raise ValueError("a property asks for regions: begin with watching(initial, properties)")
+        for name in sorted({bearer for entity in operands(atom) for bearer in facts.bearers(entity)}):
+            yield VisiblePart(placement_cell(name))
+            for agent in facts.movers[name]:
+                yield VisiblePart(line_cell(agent), plans_of, (name,))
 
     def _links(self, names: Iterable[Name], actually: bool) -> Iterator[VisiblePart]:
         for name in sorted(self.bounds.names.intersection(names)):

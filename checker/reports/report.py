@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any, Final
 
 from checker.properties.coverage import Coverage, Gap
+from checker.reports.corridors_table import corridors_json, corridors_text
 from checker.reports.times import times_json, times_text
 from checker.traces import Trace, print_length, print_trace, to_json
 from checker.verdicts import Outcome, Report, Verdict, Violation
@@ -33,6 +34,8 @@ def report_text(name: str, report: Report, *, traces: bool = True) -> Iterator[s
         yield from _verdict(verdict, width, traces=traces)
     if report.schedule is not None:
         yield from times_text(report.schedule)
+    if report.corridors is not None:
+        yield from corridors_text(report.corridors)
     yield "  rules: " + (", ".join(f"{rule} {count:,}" for rule, count in report.rules.items()) or "none")
     yield from (f"  note: {note}" for note in report.notes)
 
@@ -125,6 +128,7 @@ def report_json(name: str, digest: str, report: Report, control: Control) -> dic
         "coverage": None if report.coverage is None else coverage_json(report.coverage),
         "notes": list(report.notes),
         "times": None if report.schedule is None else times_json(report.schedule),
+        "ways": None if report.corridors is None else corridors_json(report.corridors),
         "seconds": round(report.seconds, 3),
     }
 

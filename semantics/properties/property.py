@@ -1,12 +1,13 @@
 """The properties that a mission asks to check, and the variables that they need."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import Final
 
 from semantics.behaviours.program import VariableOf
 from semantics.properties.kinds import PropertyKind
-from semantics.properties.propositions import Always, Proposition
+from semantics.properties.propositions import Always, Proposition, atoms_of
+from semantics.properties.region_atoms import RegionAtom
 from semantics.properties.temporal import Fairness, Temporal
 from semantics.state.brief import cut
 from semantics.state.configuration import Configuration
@@ -65,22 +66,43 @@ class Property:
 
 def watched(properties: Iterable[Property]) -> frozenset[VariableOf]:
     """Return the variables that the properties mention, at any depth."""
-    found: set[VariableOf] = set()
+    return frozenset(part for part in _parts(properties) if isinstance(part, VariableOf))
+
+
+def asks_of_regions(properties: Iterable[Property]) -> bool:
+    """Whether some property is about the regions of entities."""
+    return next(region_atoms(properties), None) is not None
+
+
+def region_atoms(properties: Iterable[Property]) -> Iterator[RegionAtom]:
+    """Yield the atoms about regions in properties, as written: those of quantifiers may have variables."""
+    return (part for part in _parts(properties) if isinstance(part, RegionAtom))
+
+
+def instantiated_region_atoms(properties: Iterable[Property]) -> tuple[RegionAtom, ...]:
+    """Return the atoms about regions in the propositions of properties, each once; of a quantifier, its instances'."""
+    formulas = (each.formula for each in properties if each.kind.has_proposition)
+    atoms = (atom for formula in formulas for atom in atoms_of(formula))
+    return tuple(dict.fromkeys(atom for atom in atoms if isinstance(atom, RegionAtom)))
+
+
+def _parts(properties: Iterable[Property]) -> Iterator[object]:
+    """Yield the parts of properties, at any depth."""
     waiting: list[object] = list(properties)
     while waiting:
         part = waiting.pop()
-        if isinstance(part, VariableOf):
-            found.add(part)
-        elif isinstance(part, tuple):
+        yield part
+        if isinstance(part, tuple):
             waiting.extend(part)
-        else:
+        elif not isinstance(part, VariableOf):
             waiting.extend(getattr(part, name) for name in getattr(part, "__dataclass_fields__", ()))
-    return frozenset(found)
 
 
-def watching(c: Configuration, properties: Iterable[Property]) -> Configuration:
-    """Return the configuration with the properties' variables kept to the end of the run, and the clocks they need.
+def watching(c: Configuration, properties: Iterable[Property], *, ways: bool = False) -> Configuration:
+    """Return an initial configuration with all that its properties need.
 
+    Their variables are kept to the end of the run. The facts that regions need are computed if one asks for regions, or
+    with `ways`.
     Endurance is timed only for a property `endurance`, since the clocks of several vehicles multiply the states.
     """
     asked, setting = tuple(properties), c.setting
@@ -91,5 +113,11 @@ def watching(c: Configuration, properties: Iterable[Property]) -> Configuration:
         and all(each.kind is not PropertyKind.ENDURANCE for each in asked)
     ):
         timing = timing.without_endurances()
-    unchanged = program is setting.program and timing is setting.timing
-    return c if unchanged else Configuration(setting.with_(program=program, timing=timing), c.state)
+    regions = setting.regions
+    if regions is None and (ways or asks_of_regions(asked)):
+        from semantics.regions.possible_motions import region_facts  # noqa: PLC0415 - geometry takes its time to load
+
+        regions = region_facts(c)
+    if program is setting.program and timing is setting.timing and regions is setting.regions:
+        return c
+    return Configuration(setting.with_(program=program, timing=timing, regions=regions), c.state)

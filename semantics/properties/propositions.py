@@ -10,6 +10,7 @@ from typing import Any, overload
 from semantics.behaviours.process_conversion import waits
 from semantics.behaviours.program import VariableOf
 from semantics.behaviours.values import Value, show
+from semantics.properties.region_atoms import ApartFrom, PossiblyIn, RegionAtom, SurelyIn, WithinRangeOf
 from semantics.state.agents import Store, code_cell, is_over, store_cell
 from semantics.state.configuration import Configuration
 from semantics.state.signature import REGION, Name
@@ -211,6 +212,7 @@ class Or:
 
 Atom = (
     Inside
+    | RegionAtom
     | LinkedWith
     | Present
     | Exists
@@ -527,6 +529,12 @@ def _about_variable(atom: VariableIs | IsBound, c: Configuration) -> bool:
     return c.test(store_cell(variable.agent), is_true_of, atom)
 
 
+def _about_region(atom: RegionAtom, c: Configuration) -> bool:
+    from semantics.regions.region_truth import is_true  # noqa: PLC0415 - few missions have such atoms; geometry takes its time to load
+
+    return is_true(atom, c)
+
+
 def is_true_of(store: Store | None, atom: VariableIs | IsBound) -> bool:
     """Whether an atom about a variable is true of the store that keeps it; a question about a cell."""
     held = dict(store or ()).get(atom.variable.key)
@@ -544,6 +552,7 @@ def is_true_of(store: Store | None, atom: VariableIs | IsBound) -> bool:
 _TRUTH: dict[type, Callable[[Any, Configuration], bool]] = {
     Inside: _inside,
     LinkedWith: _linked,
+    **dict.fromkeys((PossiblyIn, SurelyIn, ApartFrom, WithinRangeOf), _about_region),
     HasPending: lambda atom, c: _is_agent(c, atom.agent) and _pending(atom, c),
     VariableIs: _about_variable,
     IsBound: _about_variable,

@@ -1,12 +1,17 @@
 """The setting of a mission: everything that stays constant while configurations change."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from enum import Enum
+from typing import TYPE_CHECKING
 
 from semantics.behaviours.program import Program
 from semantics.environment import Clause
 from semantics.state.signature import EntityKinds, Name
 from semantics.timing.timing import Timing
+
+if TYPE_CHECKING:
+    from semantics.regions.region_facts import RegionFacts
 
 
 class Scheduler(Enum):
@@ -42,6 +47,8 @@ class Setting(EntityKinds):
         monitored: Whether the race monitor tracks the provenance of observations.
         clause_lines: The line in the mission's text of each clause of the environment, from 1.
         timing: The durations of steps; None if the mission has no `timing` section.
+        strays: The greatest distance in metres of a vehicle from its way, for each that has a bound; sorted.
+        regions: The facts that regions need; None if no property is about regions. No rule reads them.
     """
 
     program: Program
@@ -52,6 +59,8 @@ class Setting(EntityKinds):
     monitored: bool = False
     clause_lines: tuple[int, ...] = ()
     timing: Timing | None = None
+    strays: Mapping[Name, float] = field(default_factory=dict)
+    regions: "RegionFacts | None" = field(default=None, repr=False)
 
     def __repr__(self) -> str:
         return (

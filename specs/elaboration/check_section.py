@@ -12,6 +12,7 @@ from semantics.state.setting import Control, Scheduler
 from specs import syntax as s
 from specs.codes import Code
 from specs.elaboration.bodies import Bodies
+from specs.elaboration.distances import RegionContext
 from specs.elaboration.formulas import FormulaElaborator
 from specs.elaboration.names import Names
 from specs.elaboration.temporal import TemporalFormulas
@@ -82,14 +83,22 @@ def _written(item: s.Property, text: str) -> str:
 
 
 def elaborate_checks(
-    mission: s.Mission, names: Names, bodies: Bodies, types: Types, ticks: TickConversion | None
+    mission: s.Mission,
+    names: Names,
+    bodies: Bodies,
+    types: Types,
+    ticks: TickConversion | None,
+    ways: RegionContext,
 ) -> tuple[Property, ...]:
     """Return the properties in written order, or the default ones, followed by those that are always checked.
 
     `ticks` is None in a mission without `timing`.
     """
     written = [item for section in mission.each(s.Check) for item in section.properties]
-    formulas, found = FormulaElaborator(names, bodies, types, is_timed=ticks is not None), list[Property]()
+    formulas, found = (
+        FormulaElaborator(names, bodies, types, ways, is_timed=ticks is not None),
+        list[Property](),
+    )
     always = tuple(Property(kind, kind.value) for kind in asked_by(RequestMode.ALWAYS))
     seen = {prop.name for prop in always}
     temporal = TemporalFormulas(formulas)

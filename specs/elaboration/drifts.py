@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Final
 
-from physical import Geometry, PhysicalError, band_contains, drift_faces, face_at
+from physical import DriftWithin, Geometry, PhysicalError, band_contains, drift_faces, face_at
 from physical.placement import still
 from semantics.environment import Drifts
 from semantics.state.physical_model import Carried, Placed
@@ -113,7 +113,9 @@ def drifts_within(
     placements = tuple(Placed(face.representative, here.altitude) for face in faces)
     called = tuple(_face(clause.place.text, face.relations) for face in faces)
     following = tuple(face.adjacent for face in faces)
-    return Drifts(clause.entity.text, placements, called, following, faces[at].adjacent, within=True)
+    arrangement = DriftWithin(here.geometry, within.geometry, places, aboard)
+    first = faces[at].adjacent
+    return Drifts(clause.entity.text, placements, called, following, first, True, arrangement)
 
 
 def _face(within: str, relations: tuple[tuple[str, ...], ...]) -> str:

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import Final
 
 from semantics.behaviours.program import VariableOf
@@ -40,6 +41,7 @@ from specs.elaboration.among import Among
 from specs.elaboration.bodies import Bodies
 from specs.elaboration.comparisons import check_comparable
 from specs.elaboration.constant_values import elaborate_constant
+from specs.elaboration.distances import RegionClaim, RegionContext, region_atom
 from specs.elaboration.mission_mistakes import a
 from specs.elaboration.names import Names
 from specs.elaboration.value_types import Types
@@ -102,10 +104,13 @@ class TooLarge(Exception):
 class FormulaElaborator:
     """Elaborates the formulas of a mission; `atoms` counts all their atoms, `left` the quantifiers not expanded."""
 
-    def __init__(self, names: Names, bodies: Bodies, types: Types, *, is_timed: bool = False) -> None:
+    def __init__(
+        self, names: Names, bodies: Bodies, types: Types, ways: RegionContext, *, is_timed: bool = False
+    ) -> None:
         self.names = names
         self.bodies = bodies
         self.types = types
+        self.ways = ways
         self.is_timed = is_timed
         self.atoms = 0
         self.left = 0
@@ -220,6 +225,8 @@ class FormulaElaborator:
                 return None if len(known) < 2 else sum(known) * (2 if operator == "<->" else 1)
             case s.Inside() | s.LinkedTo() | s.Known() | s.SameName() | s.TruthLiteral():
                 return 1
+            case s.PossiblyIn() | s.SurelyIn() | s.ApartFrom() | s.WithinRangeOf():
+                return 1
             case s.Present(entity):
                 return None if isinstance(entity, s.Member) else 1
         return None
@@ -255,6 +262,12 @@ class FormulaElaborator:
     # --- atoms
 
     def _atom(self, node: s.Formula, around: Context) -> Proposition:
+        if isinstance(node, RegionClaim):
+            entity = partial(self._entity, bound=around.names)
+            return region_atom(node, self.names, self.ways, around.names, entity)
+        return self._atom_of_one_moment(node, around)
+
+    def _atom_of_one_moment(self, node: s.Formula, around: Context) -> Proposition:
         bound = around.names
         match node:
             case s.TruthLiteral(value):
@@ -411,5 +424,11 @@ def _is_said_something_of(variable: str, node: s.Formula) -> bool:
             ):
                 return True
             case s.LinkedTo(entity, other) if variable in (entity.text, other.text):
+                return True
+            case s.PossiblyIn(entity) | s.SurelyIn(entity) if entity.text == variable:
+                return True
+            case s.ApartFrom(s.Name(one), s.Name(other)) | s.WithinRangeOf(s.Name(one), s.Name(other)) if (
+                variable in (one, other)
+            ):
                 return True
     return False

@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
 from pathlib import Path
 from typing import Final
 
 from physical import open_file
-from semantics.environment import Says
+from semantics.environment import Clause, Placing, Says
 from semantics.live_policy import LivePolicy
-from semantics.properties.property import Property, watched
+from semantics.properties.property import Property, asks_of_regions, watched
 from semantics.state.brief import cut
 from semantics.state.configuration import Configuration
 from semantics.state.initial import initial
+from semantics.state.physical_model import Carried
 from semantics.state.setting import Control, Scheduler, Setting
 from semantics.state.signature import Name
 from specs import syntax as s
@@ -23,10 +24,12 @@ from specs.diagnostics import Diagnostic, MissionError, Source
 from specs.elaboration.beliefs import check_forest, elaborate_beliefs, settled
 from specs.elaboration.bodies import declare_behaviours, elaborate_bodies
 from specs.elaboration.check_section import elaborate_checks, elaborate_control, elaborate_scheduler
+from specs.elaboration.distances import RegionContext
 from specs.elaboration.environment import appearing_channels, elaborate_environment
 from specs.elaboration.independent_diagnostics import independent
 from specs.elaboration.initial_actors import first_actors
 from specs.elaboration.live import elaborate_live
+from specs.elaboration.meeting_points import warn_of_meeting_points
 from specs.elaboration.mission_mistakes import Findings
 from specs.elaboration.mobility import check_nesting, elaborate_mobility, fixed_entities, warn_of_outliers
 from specs.elaboration.names import Names
@@ -34,11 +37,12 @@ from specs.elaboration.overflights import warn_of_overflights
 from specs.elaboration.realisability import Ground, check_controls
 from specs.elaboration.rules import elaborate_rules
 from specs.elaboration.signature import elaborate_signature
+from specs.elaboration.strays import elaborate_strays
 from specs.elaboration.timing import TickConversion, elaborate_timing
 from specs.elaboration.type_constraints import check_types
 from specs.elaboration.value_types import Inference
 from specs.elaboration.variation import AS_WRITTEN, Variation
-from specs.elaboration.world import elaborate_world
+from specs.elaboration.world import InitialWorld, elaborate_world
 from specs.elaboration.world_files import Library
 from specs.missions import shipped_missions
 from specs.parser import read
@@ -128,11 +132,13 @@ def elaborate(
     scheduler, control = elaborate_scheduler(mission, names), elaborate_control(mission, names)
     scheduler, control = variation.scheduler or scheduler, variation.control or control
     timing = elaborate_timing(mission, names, world, clauses, control, whole=whole)
+    strays = elaborate_strays(mission, names, timing)
     said = tuple(clause.message for clause in clauses if isinstance(clause, Says))
     inference = Inference(program, frozenset(names.kinds), frozenset(names.agents), said)
     types = check_types(names.demands, inference, names.findings)
     ticks = None if timing is None else TickConversion(timing.tick, names.findings)
-    properties = elaborate_checks(mission, names, bodies, types, ticks)
+    places = frozenset(_with_an_inside(world, clauses))
+    properties = elaborate_checks(mission, names, bodies, types, ticks, RegionContext(control, places))
     precautions = elaborate_live(mission, names)
     _stop(names.findings)
     setting = Setting(
@@ -145,6 +151,7 @@ def elaborate(
         arriving,
         clause_lines=tuple(source.line(span.start) for span in clause_spans),
         timing=timing,
+        strays=strays,
     )
     there = {name: world.channels[name] for name in world.placements}
     begin = partial(initial, placements=world.placements, channels=there, agents=agents)
@@ -153,6 +160,12 @@ def elaborate(
         check_forest(mission, begin(setting), names)
     _stop(names.findings)
     warn_of_overflights(setting, partial(begin, setting), properties, names.findings)
+    if asks_of_regions(properties):
+        from semantics.regions.possible_motions import region_facts  # noqa: PLC0415 - few missions ask for regions
+
+        facts = region_facts(begin(setting))
+        setting = setting.with_(regions=facts)
+        warn_of_meeting_points(setting, facts, properties, names)
     called = mission.name.text if mission.name is not None else Path(source.name).stem
     return ElaboratedMission(
         called,
@@ -197,6 +210,18 @@ def diagnose(
         return meant
     both = MissionError(source, (*found.mistakes, *independent(meant.mistakes, found.unread, source)))
     return Diagnosis(both.diagnostics, tuple(independent(meant.warnings, found.unread, source)), None)
+
+
+def _with_an_inside(world: InitialWorld, clauses: Iterable[Clause]) -> Iterator[Name]:
+    """Yield the entities that have an area, at first or later."""
+    shapes = [(name, world.shape(name)) for name in world.placements]
+    shapes += [
+        (each.entity, at.shape if isinstance(at, Carried) else at)
+        for each in clauses
+        if isinstance(each, Placing)
+        for at in each.placements
+    ]
+    yield from (name for name, at in shapes if at is not None and not at.geometry.is_point)
 
 
 def require_bigactor(mission: ElaboratedMission) -> None:

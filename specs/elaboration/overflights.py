@@ -1,12 +1,14 @@
 """Overflights: flights that may cross a place from which an invariant excludes the vehicle.
 
-An invariant is about the places that contain vehicles, and a vehicle in transit is in no place that it only crosses. So
-an invariant that excludes a vehicle from a place holds even if its path leads through. No property is about paths yet.
-Therefore this module warns whenever the place meets the hull of two successive points of a possible flight.
+`actually` is about the places that contain vehicles, and a vehicle in transit is in no place that it only crosses. So
+an invariant that excludes a vehicle from a place holds even if its path leads through. Unless another invariant asks
+for the path (`not possibly u in p`), this module warns if the place meets the hull of two successive points of a
+possible flight.
 """
 
 from collections.abc import Callable, Iterable, Iterator
 from itertools import islice, pairwise, product
+from typing import TypeVar
 
 from physical import Geometry
 from physical.extents import extent, least_distance, span
@@ -16,6 +18,7 @@ from semantics.environment import Appears, Drifts
 from semantics.properties.kinds import PropertyKind
 from semantics.properties.property import Property
 from semantics.properties.propositions import And, Inside, Not, Or, Proposition
+from semantics.properties.region_atoms import PossiblyIn
 from semantics.races.relevance import hosts_of, instances
 from semantics.state.configuration import Configuration
 from semantics.state.physical_model import Carried
@@ -25,20 +28,24 @@ from specs import syntax as s
 from specs.codes import Code
 from specs.elaboration.mission_mistakes import Findings
 
+A = TypeVar("A", Inside, PossiblyIn)
+
 Leg = tuple[Name, tuple[Name, ...]]
 """A vehicle, with the places of its VIA and its destination."""
 
 MOST_PARTS = 2_000
 """The most operands of a quantifier that are examined."""
 
-HINT = "an invariant is about its place, not its way; lead it around: MOVE_HOST_TO place VIA gate0, gate1"
+AROUND = "lead it around: MOVE_HOST_TO place VIA gate0, gate1"
 
 
 def warn_of_overflights(
     setting: Setting, begin: Callable[[], Configuration], properties: Iterable[Property], findings: Findings
 ) -> None:
     """Warn once of each invariant that excludes a vehicle from a place that its flights may cross."""
-    forbidden = [(each, *pair) for each in properties for pair in _kept_out(setting, each)]
+    asked = tuple(properties)
+    watched = {(atom.entity, atom.place) for each in asked for atom in _denied_of(each, PossiblyIn)}
+    forbidden = [(each, *pair) for each in asked for pair in _kept_out(setting, each) if pair not in watched]
     if not forbidden:
         return
     c = begin()
@@ -48,7 +55,8 @@ def warn_of_overflights(
         found = next((way for way in ways if way is not None), None)
         if found is not None:
             message = f"{vehicle} may cross {place} on its way from {found[0]} to {found[1]}"
-            findings.warn(Code.MAY_CROSS, _line(findings, invariant.line), message, HINT)
+            hint = f"'actually' is about its place, not its way; ask for its way: not possibly {vehicle} in {place}"
+            findings.warn(Code.MAY_CROSS, _line(findings, invariant.line), message, f"{hint}; {AROUND}")
 
 
 def _line(findings: Findings, number: int) -> s.Span:
@@ -60,18 +68,24 @@ def _line(findings: Findings, number: int) -> s.Span:
 
 def _kept_out(setting: Setting, asked: Property) -> Iterator[tuple[Name, Name]]:
     """Yield the pairs of vehicle and place that an invariant keeps apart in P."""
-    if asked.kind is not PropertyKind.INVARIANT or asked.line == 0:
-        return
-    for atom in dict.fromkeys(_denied(asked.formula, negated=False)):
+    for atom in _denied_of(asked, Inside):
         known = atom.node in setting.kinds and atom.place in setting.kinds
         if atom.actually and known and setting.signature[setting.kind(atom.node)].driven:
             yield atom.node, atom.place
 
 
-def _denied(formula: Proposition, *, negated: bool) -> Iterator[Inside]:
+def _denied_of(asked: Property, sort: type[A]) -> tuple[A, ...]:
+    """Return the atoms of a sort that an invariant of the mission denies."""
+    if asked.kind is not PropertyKind.INVARIANT or asked.line == 0:
+        return ()
+    denied = dict.fromkeys(_denied(asked.formula, negated=False))
+    return tuple(atom for atom in denied if isinstance(atom, sort))
+
+
+def _denied(formula: Proposition, *, negated: bool) -> Iterator[Inside | PossiblyIn]:
     """Yield the atoms that must be false for a formula to be true."""
     match formula:
-        case Inside() if negated:
+        case Inside() | PossiblyIn() if negated:
             yield formula
         case Not(inner):
             yield from _denied(inner, negated=not negated)

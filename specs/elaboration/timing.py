@@ -8,7 +8,6 @@ from fractions import Fraction
 from math import gcd
 from typing import Any, Final, TypeVar
 
-from bigraphs.notation.spelling import listed
 from semantics.behaviours.commands import COMMANDS
 from semantics.behaviours.durations import UNITS, duration_text
 from semantics.behaviours.values import show
@@ -31,6 +30,7 @@ from specs.construct_text import write
 from specs.elaboration.constant_values import elaborate_constant
 from specs.elaboration.mission_mistakes import Findings, a
 from specs.elaboration.names import Names
+from specs.elaboration.vehicles import named_vehicles
 from specs.elaboration.world import InitialWorld
 from specs.mission_layout import pieces
 from specs.timing_mistakes import BEGINNING
@@ -220,30 +220,8 @@ def _tick(bounds: Iterable[s.Bound], findings: Findings) -> int:
 # --- vehicles
 
 
-def _vehicles(said: _Said, name: s.Name, what: str) -> tuple[str, ...]:
-    """Return the vehicles of a kind, or the named vehicle; reports any other name, and kinds that are not driven."""
-    names, kind = said.names, said.names.kinds.get(name.text, name.text)
-    if kind not in names.signature.kinds:
-        among = [*names.signature.kinds, *names.kinds]
-        driven = [each for each, of in names.kinds.items() if names.signature[of].driven]
-        otherwise = listed(driven, "vehicles")
-        names.findings.unknown(name, among, sort="vehicle or kind of vehicles", otherwise=otherwise)
-        return ()
-    if not names.signature[kind].driven:
-        message = f"'{name.text}' {what}, and {a(kind)} is not driven"
-        names.findings.add(Code.NOT_DRIVEN, name, message, f"declare it: kind {kind} driven")
-        return ()
-    if name.text in names.kinds:
-        return (name.text,)
-    found = tuple(sorted(each for each, of in names.kinds.items() if of == kind))
-    if not found:
-        message = f"there is no entity of kind {kind}: this bound has no effect"
-        names.findings.warn(Code.BOUNDS_NOTHING, name, message, "declare one, or leave this out")
-    return found
-
-
 def _motion(said: _Said, node: s.Motion) -> None:
-    vehicles = _vehicles(said, node.name, "flies")
+    vehicles = named_vehicles(said.names, node.name, "flies")
     speed = _speeds(said, node.speeds)
     climb = None if node.climbs is None else _speeds(said, node.climbs)
     circle = 0.0 if node.circles is None else 2 * node.circles.metres
@@ -263,7 +241,7 @@ def _speeds(said: _Said, node: s.Speeds) -> tuple[float, float]:
 
 
 def _lasting(said: _Said, node: s.Lasting) -> None:
-    vehicles = _vehicles(said, node.name, "lasts")
+    vehicles = named_vehicles(said.names, node.name, "lasts")
     lasts, after = said.ticks.count(node.lasts), said.ticks.maybe(node.after) or 0
     for place in node.places:
         around = said.names.entity(place)

@@ -35,6 +35,7 @@ from specs.syntax.declarations import (
     Says,
     Scheduler,
     StandardProperty,
+    Strays,
     Vanishes,
 )
 from specs.syntax.expressions import (
@@ -59,6 +60,7 @@ from specs.syntax.expressions import (
 )
 from specs.syntax.formulas import (
     SIGNS,
+    ApartFrom,
     Connective,
     Enabled,
     Ended,
@@ -76,15 +78,18 @@ from specs.syntax.formulas import (
     PathPrefix,
     PathQuantifier,
     Pending,
+    PossiblyIn,
     Present,
     Progress,
     Quantified,
     SameName,
     Steps,
     Stored,
+    SurelyIn,
     Taken,
     TemporalProperty,
     Waiting,
+    WithinRangeOf,
 )
 from specs.syntax.live import Live, OnBroken, Precaution, TimeLimit
 from specs.syntax.nodes import (
@@ -183,6 +188,7 @@ __all__ = [
     "AllNodes",
     "Alternative",
     "AltitudeBand",
+    "ApartFrom",
     "Appears",
     "ApplyRule",
     "Arrives",
@@ -278,6 +284,7 @@ __all__ = [
     "Placement",
     "Point",
     "Polygon",
+    "PossiblyIn",
     "Precaution",
     "PresenceTime",
     "Present",
@@ -311,6 +318,8 @@ __all__ = [
     "StepTime",
     "Steps",
     "Stored",
+    "Strays",
+    "SurelyIn",
     "Taken",
     "TemporalProperty",
     "TextLiteral",
@@ -326,6 +335,7 @@ __all__ = [
     "Waiting",
     "While",
     "Wildcard",
+    "WithinRangeOf",
     "World",
     "WorldEntry",
     "parts",

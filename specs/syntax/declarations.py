@@ -11,7 +11,7 @@ from specs.syntax.live import Live
 from specs.syntax.nodes import Name, Node, node
 from specs.syntax.statements import Duration, Statement
 from specs.syntax.timing import Timing
-from specs.syntax.world import Believes, Placement, Signature, World
+from specs.syntax.world import Believes, Length, Placement, Signature, World
 
 # --- rules, behaviours, bigActors
 
@@ -155,8 +155,20 @@ class Arrives(Node):
     entity: Name
 
 
+@node
+class Strays(Node):
+    """`UAV strays at most 30 m`, `uav0 strays at most 30 m`: the farthest distance of a vehicle from its way.
+
+    The way is the shortest line between the points to which it is sent; take-off, turns and wind are included. The
+    clause of a vehicle replaces that of its kind. It only bounds [regions](#regions).
+    """
+
+    vehicle: Name
+    distance: Length
+
+
 EnvironmentClause: TypeAlias = (
-    DriftsAmong | DriftsWithin | Drops | Leaves | Appears | Vanishes | Says | Arrives
+    DriftsAmong | DriftsWithin | Drops | Leaves | Appears | Vanishes | Says | Arrives | Strays
 )
 
 

@@ -6,6 +6,7 @@ from typing import TypeAlias
 
 from specs.syntax.expressions import Agent, Expression, TextLiteral, TruthLiteral
 from specs.syntax.nodes import Name, Node, node
+from specs.syntax.world import Length
 
 
 @node
@@ -53,6 +54,48 @@ class Inside(Node):
     place: Name
     directly: bool = False
     actually: bool = False
+
+
+@node
+class PossiblyIn(Node):
+    """`possibly X in Y`: X may be over the place Y, at rest or on its way.
+
+    The [region](#regions) of X has a point in the interior of Y, and their altitudes meet; or Y carries X.
+    """
+
+    entity: Name
+    place: Name
+
+
+@node
+class SurelyIn(Node):
+    """`surely X in Y`: X is in the place Y, wherever it is on its way: all of its region lies in Y; or Y carries X."""
+
+    entity: Name
+    place: Name
+
+
+@node
+class ApartFrom(Node):
+    """`X at least 50 m from Y`, `X at least 50 m or 30 m up from Y`.
+
+    No point of X's region is nearer to one of Y's. It is also true if one is above the other by that length, or by the
+    second one if it is given, and if one is absent.
+    """
+
+    entity: Agent
+    other: Agent
+    distance: Length
+    height: Length | None = None
+
+
+@node
+class WithinRangeOf(Node):
+    """`X within 3 km of Y`: both are there, and no point of X's region is farther from any of Y's."""
+
+    entity: Agent
+    other: Agent
+    distance: Length
 
 
 @node
@@ -226,6 +269,10 @@ Formula: TypeAlias = (
     | Connective
     | Quantified
     | Inside
+    | PossiblyIn
+    | SurelyIn
+    | ApartFrom
+    | WithinRangeOf
     | LinkedTo
     | Present
     | Known

@@ -21,7 +21,7 @@ from checker.handover import Compilation, Handover
 from specs.elaboration import load_mission
 
 mission = load_mission("go_ahead")
-compilation = Compilation(mission.initial, mission.properties, (), 1, False)
+compilation = Compilation(mission.initial, mission.properties, (), 1, False, False)
 assert not compilation.is_done()
 with Handover(0.0, compilation) as change:
     assert not change.is_due()
@@ -36,7 +36,7 @@ print("compiled")
 
 def job(mission: str = "go_ahead", *reductions: Reduction) -> Compilation:
     loaded = load_mission(mission)
-    return Compilation(loaded.initial, loaded.properties, reductions, 1, times=False)
+    return Compilation(loaded.initial, loaded.properties, reductions, 1, times=False, ways=False)
 
 
 @pytest.mark.parametrize(

@@ -9,7 +9,7 @@ import pytest
 from checker import Engine, Limits, Outcome, Reduction, Report, check
 from semantics import Control, Scheduler
 from semantics.properties.kinds import PropertyKind
-from specs.elaboration import Variation, load_mission
+from specs.elaboration import Variation, load_mission, read_mission
 
 MISSIONS = Path(__file__).parents[2] / "specs" / "missions"
 
@@ -26,7 +26,11 @@ class Expected:
 
 
 SHIPPED: dict[str, Expected] = {
+    "broken_corridor": Expected(
+        81, 180, violated={"never over the prison": {"invariant": 5}}, witnesses={"both are back": 12}
+    ),
     "broken_control_race": Expected(10, 12, violated={"race_freedom": {"control race": 2}}),
+    "broken_crossing": Expected(16, 24, violated={"apart": {"invariant": 4}}, witnesses={"both are over": 6}),
     "broken_deadlock": Expected(526, 1_128, violated={"deadlock_freedom": {"deadlock": 22}}),
     "broken_endurance": Expected(
         26,
@@ -44,9 +48,15 @@ SHIPPED: dict[str, Expected] = {
             "there and back": "after 28:35 at the latest",
         },
     ),
+    "broken_range_of_radio": Expected(
+        8, 9, violated={"in range of the first": {"invariant": 2}}, witnesses={"handed over": 5}
+    ),
     "broken_unmatched": Expected(24, 46, violated={"local_consistency": {"unmatched": 3}}),
     "broken_unrealisable": Expected(60, 136, violated={"local_consistency": {"unrealisable": 4}}),
     "convoy": Expected(3_730, 11_253, witnesses={"all are out": 54}),
+    "corridor": Expected(81, 180, witnesses={"both are back": 12}),
+    "crossing": Expected(15, 16, witnesses={"both are over": 12}),
+    "crossing_timed": Expected(8, 7, times={"both are over": "after 23:20 at the latest"}),
     "distributed_handover": Expected(102, 157, witnesses={"once around": 45}),
     "endurance": Expected(26, 28, times={"home": "at 12:30 at the earliest, at 28:10 at the latest"}),
     "go_ahead": Expected(82, 202, witnesses={"surveyed": 9}),
@@ -82,6 +92,7 @@ SHIPPED: dict[str, Expected] = {
             "there and back": "after 28:35 at the latest",
         },
     ),
+    "range_of_radio": Expected(20, 24, witnesses={"handed over": 14}),
     "relay_timed": Expected(
         16,
         29,
@@ -130,6 +141,40 @@ def test_a_mission_that_ships_has_its_counts_verdicts_and_shortest_traces(name):
     assert reached == expected.witnesses
     timed = (PropertyKind.TIME, PropertyKind.WITHIN)
     assert {v.property.name: v.note for v in report.verdicts if v.property.kind in timed} == expected.times
+
+
+MOST = Limits(configurations=5_000)
+
+
+def with_regions(name: str) -> str:
+    """Return the text of a mission with a bound on each vehicle's way, and a property about each two vehicles."""
+    mission = load_mission(MISSIONS / f"{name}.mission")
+    kinds, signature = mission.setting.kinds, mission.setting.signature
+    driven = sorted({kind for kind in kinds.values() if signature[kind].driven})
+    first = min(kinds)
+    asked = [
+        f"forall x: {kind} . x at least 1 m from {first} or x within 900 km of {first}" for kind in driven
+    ]
+    strays = "\n".join(f"  {kind} strays at most 200 m" for kind in driven)
+    checks = "\n".join(f'  invariant "way {rank}": {each}' for rank, each in enumerate(asked))
+    text = (MISSIONS / f"{name}.mission").read_text(encoding="utf-8")
+    text = "\n".join(line for line in text.split("\n") if "strays" not in line)
+    return f"{text}\nenvironment {{\n{strays}\n}}\ncheck {{\n{checks}\n}}\n"
+
+
+@pytest.mark.parametrize("name", SHIPPED)
+def test_properties_about_ways_change_no_configuration(name):
+    timed = Variation(control=Control.TIMED)
+    plain = load_mission(MISSIONS / f"{name}.mission", timed)
+    asked = read_mission(with_regions(name), MISSIONS, variation=timed)
+    counts = [
+        (each.configurations, each.transitions, each.depth)
+        for each in (
+            check(plain.initial, plain.properties, MOST),
+            check(asked.initial, asked.properties, MOST),
+        )
+    ]
+    assert counts[0] == counts[1]
 
 
 PAPERS_RUN = [

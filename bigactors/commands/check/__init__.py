@@ -63,6 +63,12 @@ def _report(parser: Parser) -> None:
         help="print the earliest and the latest moment at which each flight of a mission with timing begins and ends, "
         "and each time property is first true",
     )
+    group.add_argument(
+        "--ways",
+        action="store_true",
+        help="print the way of each flight leg by leg: its length, its distance from each place that a property about "
+        "ways names, and the least distance of two vehicles that may be under way together",
+    )
     group.add_argument("--no-traces", action="store_true", help="print a short report, without traces")
 
 

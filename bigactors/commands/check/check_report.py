@@ -82,7 +82,7 @@ def report_all(
     for result in checked:
         results.append(result)
         if not alone:
-            for line in report_lines(result, traces=not options.no_traces):
+            for line in report_lines(result, traces=not options.no_traces, ways=options.ways):
                 say(coloured(line))
         if options.verdict and isinstance(result, Checked):
             keep_verdict(result, options, key)
@@ -96,11 +96,11 @@ def report_all(
     return code
 
 
-def report_lines(result: Checked | FailedMission, *, traces: bool) -> Iterator[str]:
+def report_lines(result: Checked | FailedMission, *, traces: bool, ways: bool = False) -> Iterator[str]:
     """Yield the printed lines about one mission; none for a failed one, whose message is already printed."""
     if isinstance(result, FailedMission):
         return
-    report = result.report
+    report = result.report if ways else replace(result.report, corridors=None)
     for caution in cautions_of(result.mission):
         yield from caution_text(result.name, caution)
     yield from report_text(result.name, report, traces=traces)

@@ -20,7 +20,7 @@ def settings_of(options: Namespace) -> tuple[Limits, How]:
         Mistake: Two options do not work together.
     """
     limits, how = _limits_of(options), _how_of(options)
-    asked = features(limits, how.keeping, how.reduce, cluster=how.cluster, threads=how.threads)
+    asked = features(limits, how.keeping, how.reduce, cluster=how.cluster, threads=how.threads, ways=how.ways)
     try:
         engines(asked, how.engine)
     except CombinationError as unmet:
@@ -39,6 +39,8 @@ def _how_of(options: Namespace) -> How:
         _cluster_of(options),
         options.threads,
         options.times,
+        options.ways,
+        any(name == "geojson" for name, _ in options.output),
     )
 
 

@@ -32,6 +32,7 @@ from bigactors.commands.run.console_beside import console_beside, recorded
 from bigactors.commands.run.preflight_checks import check_flyable, check_idle, check_places, get_to_know
 from bigactors.commands.run.starting import Start, StartChecks, stand_by
 from bigactors.commands.run.station_flight import Company, company_of, parting_json
+from bigactors.commands.run.unwatched_ways import check_ways
 from bigactors.exits import Exit
 from bigactors.files import check_writable
 from bigactors.flight_watchers import Log, Tape, Terminal
@@ -138,6 +139,7 @@ def prepare(options: Namespace) -> Flight:
     log = None if options.record is None else Log(_log_beside(options.record))
     plugins, owners = plugins_of(options, mission, log)
     check_flyable(mission)
+    check_ways(mission, is_verified=licence is not None)
     strict = licence is not None and licence.scheduler is Scheduler.FCFS
     plan = Plan(mission.initial, owners, mission.precautions, strict)
     before = None if options.resume is None else resume(options.resume, mission)

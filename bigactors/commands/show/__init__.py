@@ -15,6 +15,7 @@ from bigactors.terminal import say, tell
 
 if TYPE_CHECKING:
     from checker import Trace
+    from semantics import Property
 
 DESCRIPTION: Final = """\
 Print the initial configuration of a mission, or any configuration of a trace, and draw its bigraph beside the map.
@@ -109,7 +110,7 @@ def run(options: Namespace) -> Exit:
             return _compare(options)
         if options.output and Path(options.output).suffix.lower() in GEOJSON:
             return _write_tracks(options)
-        name, trace, times, step = _chosen(options)
+        name, trace, times, step, asked = _chosen(options)
     except ReplayError as error:
         tell(f"{options.trace}: {error}")
         return Exit.VIOLATED
@@ -117,7 +118,7 @@ def run(options: Namespace) -> Exit:
         _show_lanes(trace, unfolded=options.all)
     else:
         _show_configuration(trace, step)
-    _write(options, name, trace, times, step)
+    _write(options, name, trace, times, step, asked)
     return Exit.HOLDS
 
 
@@ -171,7 +172,7 @@ def _write_tracks(options: Namespace) -> Exit:
     if is_recording(options.trace):
         count = write_recorded(options.trace, options.output)
     else:
-        _, trace, times, _ = _chosen(options)
+        _, trace, times, _, _ = _chosen(options)
         count = write_traced(trace, times, options.output)
     tell(f"{counted(count, 'track')} written to {options.output}")
     return Exit.HOLDS
@@ -215,16 +216,26 @@ def _show_configuration(trace: Trace, step: int) -> None:
         say(print_loop(trace))
 
 
-def _write(options: Namespace, name: str, trace: Trace, times: tuple[float, ...], step: int) -> None:
+def _write(
+    options: Namespace,
+    name: str,
+    trace: Trace,
+    times: tuple[float, ...],
+    step: int,
+    asked: tuple[Property, ...],
+) -> None:
     """Write the output by its suffix: a page, the lanes as a picture, or the picture of a configuration."""
     from bigactors.files import file_stem
     from bigactors.pages import Story
     from bigactors.picture_files import draw, draw_lanes, write_page
+    from bigactors.pictures import marks_of
 
+    marks = marks_of(trace.initial, trace.configurations[step], asked)
     output = options.output
     if output is not None and Path(output).suffix.lower() in PAGES:
         start = step if options.step is not None else 0
-        left_out = write_page(Story(name, "", False, trace, start, times=times, unfolded=options.all), output)
+        story = Story(name, "", False, trace, start, times=times, unfolded=options.all, marks=marks)
+        left_out = write_page(story, output)
         tell(f"page written to {output}")
         for line in left_out:
             tell(line)
@@ -240,12 +251,13 @@ def _write(options: Namespace, name: str, trace: Trace, times: tuple[float, ...]
         output,
         f"{name}, c{step}",
         trace.configurations[step - 1] if step else None,
+        marks,
     )
     tell(f"picture written to {output}")
 
 
-def _chosen(options: Namespace) -> tuple[str, Trace, tuple[float, ...], int]:
-    """Return the mission's name, its trace, the times of the steps, and the number of the configuration to show."""
+def _chosen(options: Namespace) -> tuple[str, Trace, tuple[float, ...], int, tuple[Property, ...]]:
+    """Return the mission's name, its trace, the steps' times, the configuration to show, and the properties."""
     from bigactors.commands.replay.trace_reader import read_trace
     from bigactors.mission_lookup import open_mission, opening, variation_of
     from checker import Trace
@@ -263,7 +275,7 @@ def _chosen(options: Namespace) -> tuple[str, Trace, tuple[float, ...], int]:
             )
             raise Mistake(f"{word} a trace", "give the trace with --trace")
         mission = open_mission(options.file, variation_of(options))
-        return mission.name, Trace(mission.initial), (), 0
+        return mission.name, Trace(mission.initial), (), 0, mission.properties
     found = read_trace(options.trace, options.file, opening(variation_of(options)), dict(options.name))
     trace = found.trace
     step = len(trace) if options.step is None else options.step
@@ -273,4 +285,4 @@ def _chosen(options: Namespace) -> tuple[str, Trace, tuple[float, ...], int]:
             f"give --step 0 to {len(trace)}",
             options.trace,
         )
-    return found.mission.name, trace, found.times, step
+    return found.mission.name, trace, found.times, step, found.mission.properties

@@ -227,7 +227,8 @@ class Choosing:
         self.seen_masks = np.zeros(where.words, np.uint64)
         self.seen_whole = np.zeros(where.words, np.uint64)
         asked: list[int] = []
-        answers: list[bool] = []
+        answers: list[int] = []
+        numbers: dict[object, int] = {}
         for seen, number in looks:
             bits = where.mask[number] << where.shift[number]
             self.seen_masks[where.word[number]] |= bits
@@ -236,9 +237,10 @@ class Choosing:
                 continue
             column = columns.all[number]
             asked += [number, len(answers)]
-            answers += [seen.says(column.value(code)) for code in range(len(column.values))]
+            said = (seen.says(column.value(code)) for code in range(len(column.values)))
+            answers += [numbers.setdefault(answer, len(numbers)) for answer in said]
         self.seen = np.array(asked, np.int32)
-        self.seen_answers = np.array(answers, np.uint8)
+        self.seen_answers = np.array(answers, np.int32)
 
     def _columns(self, seen: VisiblePart) -> list[int]:
         """Return the columns of a cell: its skeleton, and the facts in its holes if its value counts."""

@@ -3,17 +3,22 @@
 A fleet of fifty vehicles on two hundred places has ten thousand atoms `x in c`. A row needs only fifty profiles: the
 sets of true atoms about each x. A subformula about one or two names is evaluated once for each pair of profiles that
 occurs. Quantifiers over more names are expanded, instance by instance.
+
+An atom about regions has two subjects, each with the regions of one entity. So every two regions are compared once, and
+not once in each row.
 """
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Hashable, Iterable, Iterator
 from dataclasses import replace
 from functools import partial, reduce
 from operator import and_, or_
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from checker.engines.fast.row_survey import RowSurvey, distinct_leaves
+from physical import PhysicalError
 from semantics.properties.propositions import (
     Always,
     And,
@@ -36,11 +41,14 @@ from semantics.properties.propositions import (
     is_variable,
     places_around,
 )
+from semantics.properties.region_atoms import ApartFrom, RegionAtom, operands
 from semantics.state.configuration import Configuration
 from semantics.state.signature import Name
 
 Bools = NDArray[np.bool_]
 Numbers = NDArray[np.int64]
+Table = NDArray[Any]
+"""The true atoms of each profile of a subject, one row for each; of regions, their numbers."""
 
 Subject = tuple[Name, ...]
 """The names of an atom; the atoms of one subject share their reads."""
@@ -50,12 +58,26 @@ Subjects = tuple[Subject, ...]
 MOST_TOGETHER = 2
 """The greatest number of subjects with combined profiles."""
 
+MOST_REGION_PAIRS = 1 << 12
+"""The greatest number of pairs of regions that are compared before a look at the rows."""
+
 MOST_PAIRS = 1 << 22
 """The greatest number of profile pairs in a table; more are sorted."""
 
 
+OF_REGION = ""
+"""The first name of a subject whose profiles are the regions of an entity."""
+
+
+def subjects_of_atom(atom: Atom) -> Subjects:
+    """Return the subjects of an atom: two if it is about the regions of two entities."""
+    if isinstance(atom, RegionAtom):
+        return tuple((OF_REGION, name) for name in dict.fromkeys(operands(atom)))
+    return (subject(atom),)
+
+
 def subject(atom: Atom) -> Subject:
-    """Return the subject of an atom: both names if it reads equally much about each."""
+    """Return the single subject of an atom: both names if it reads equally much about each."""
     match atom:
         case (
             Inside(name)
@@ -85,13 +107,18 @@ class Profiles:
         self.formula = formula
         self.changing = False
         self.atoms: dict[Subject, list[Atom]] = {}
+        self.regions = Regions()
         for atom in dict.fromkeys(atoms_of(formula)):
-            self.atoms.setdefault(subject(atom), []).append(atom)
+            for one in subjects_of_atom(atom):
+                self.atoms.setdefault(one, []).append(atom)
         self.ranks = {atom: rank for each in self.atoms.values() for rank, atom in enumerate(each)}
         self.anchors: dict[Inside, list[int]] = {}
         learner = survey.learner
         self.trees = {
-            one: learner.question(partial(profile, tuple(atoms))) for one, atoms in self.atoms.items()
+            one: learner.question(
+                partial(standing, one[1]) if is_of_region(one) else partial(profile, tuple(atoms))
+            )
+            for one, atoms in self.atoms.items()
         }
         self.numbers: dict[Subject, dict[object, int]] = {one: {} for one in self.atoms}
         self.met: dict[Subject, set[int]] = {one: set() for one in self.atoms}
@@ -119,14 +146,59 @@ class Profiles:
             self.anchors[anchor] = [self.ranks[atom] for atom in each]
         return self.anchors[anchor]
 
-    def table(self, one: Subject) -> Bools:
-        """Return the true atoms of each profile of a subject: one row for each profile."""
+    def table(self, one: Subject) -> Table:
+        """Return the true atoms of each profile of a subject: one row for each profile; of regions, their numbers."""
+        if is_of_region(one):
+            return np.array([self.regions.number(each) for each in self.numbers[one]], np.int64)
         width = len(self.atoms[one])
         bits = [
             np.unpackbits(np.frombuffer(each, np.uint8), count=width, bitorder="little")  # type: ignore[call-overload]  # profiles are bytes
             for each in self.numbers[one]
         ]
         return np.array(bits, np.bool_).reshape(len(bits), width)
+
+
+def is_of_region(one: Subject) -> bool:
+    """Whether the profiles of a subject are the regions of an entity."""
+    return one[0] == OF_REGION
+
+
+def standing(entity: Name, c: Configuration) -> Hashable:
+    """Return an entity with its region in a configuration."""
+    from semantics.regions.region_truth import located  # noqa: PLC0415 - geometry takes its time to load
+
+    return located(c, entity)
+
+
+class Regions:
+    """The regions that occur, by number, and the truth of atoms about two of them."""
+
+    def __init__(self) -> None:
+        self.numbers: dict[Any, int] = {}
+        self.all: list[Any] = []
+        self.said: dict[Hashable, bool] = {}
+
+    def number(self, located: Any) -> int:
+        """Return the number of an entity with its region."""
+        if located not in self.numbers:
+            self.numbers[located] = len(self.all)
+            self.all.append(located)
+        return self.numbers[located]
+
+    def relate(self, atom: RegionAtom, ones: Numbers, others: Numbers) -> Bools:
+        """Return the truth of an atom for pairs of numbered regions."""
+        pairs, which = np.unique(ones << 32 | others, return_inverse=True)
+        said = [self._relates(atom, pair >> 32, pair & 0xFFFFFFFF) for pair in pairs.tolist()]
+        return np.array(said, np.bool_)[which]
+
+    def _relates(self, atom: RegionAtom, one: int, other: int) -> bool:
+        from semantics.regions.region_truth import relates  # noqa: PLC0415 - as in `standing`
+
+        first, second = (other, one) if isinstance(atom, ApartFrom) and other < one else (one, other)
+        asked = (type(atom), getattr(atom, "distance", 0), getattr(atom, "height", 0), first, second)
+        if asked not in self.said:
+            self.said[asked] = relates(atom, self.all[first], self.all[second])
+        return self.said[asked]
 
 
 def profile(atoms: tuple[Atom, ...], c: Configuration) -> bytes:
@@ -152,6 +224,7 @@ class _Block:
         self.codes = codes
         self.size = size
         self.tables = {one: profiles.table(one) for one in codes}
+        self.present = {one: np.unique(each) for one, each in codes.items()}
 
     def true(self, formula: Proposition) -> Bools:
         """Return whether a proposition is true, for each row."""
@@ -168,6 +241,9 @@ class _Block:
         raise AssertionError(formula)  # an atom has one subject
 
     def _by_profiles(self, formula: Proposition, subjects: Subjects) -> Bools:
+        same = self._by_all_pairs(formula, subjects)
+        if same is not None:
+            return np.broadcast_to(np.bool_(same), self.size)
         together, counts = np.zeros(self.size, np.int64), [len(self.tables[one]) for one in subjects]
         for one, count in zip(subjects, counts, strict=True):
             together = together * count + self.codes[one]
@@ -179,15 +255,33 @@ class _Block:
         said[there] = self._said(formula, subjects, there)
         return said[together]
 
+    def _by_all_pairs(self, formula: Proposition, subjects: Subjects) -> bool | None:
+        """Return the truth of a proposition about regions if it is the same for all that occur; else None.
+
+        A fleet has so many pairs of vehicles that a look at each row for each pair would take too long.
+        """
+        if not subjects or not all(map(is_of_region, subjects)) or not self.size:
+            return None
+        present = [self.present[one] for one in subjects]
+        if np.prod([len(each) for each in present], dtype=np.float64) > MOST_REGION_PAIRS:
+            return None
+        grid = np.meshgrid(*present, indexing="ij")
+        tables = {one: self.tables[one][each.ravel()] for one, each in zip(subjects, grid, strict=True)}
+        try:
+            said = self._of(formula, tables, grid[0].size)
+        except PhysicalError:  # of regions that may never occur together
+            return None
+        return bool(said[0]) if said.all() or not said.any() else None
+
     def _said(self, formula: Proposition, subjects: Subjects, there: Numbers) -> Bools:
         """Return the truth of a proposition for combined profile numbers of its subjects."""
-        tables, rest = dict[Subject, Bools](), there
+        tables, rest = dict[Subject, Table](), there
         for one in reversed(subjects):
             rest, code = np.divmod(rest, len(self.tables[one]))
             tables[one] = self.tables[one][code]
         return self._of(formula, tables, len(there))
 
-    def _of(self, formula: Proposition, tables: dict[Subject, Bools], size: int) -> Bools:
+    def _of(self, formula: Proposition, tables: dict[Subject, Table], size: int) -> Bools:
         match formula:
             case Always(value):
                 return np.full(size, value)
@@ -198,9 +292,13 @@ class _Block:
                 each = self._worth_asking(parts, tables) if isinstance(parts, Instances) else iter(parts)
                 said = (self._of(part, tables, size) for part in each)
                 return reduce(operation, said, np.full(size, start))
-        return tables[subject(formula)][:, self.profiles.ranks[formula]]
+        if isinstance(formula, RegionAtom):
+            one, *others = (tables[each] for each in subjects_of_atom(formula))
+            return self.profiles.regions.relate(formula, one, others[0] if others else one)
+        true: Bools = tables[subject(formula)][:, self.profiles.ranks[formula]]
+        return true
 
-    def _worth_asking(self, parts: Instances, tables: dict[Subject, Bools]) -> Iterator[Proposition]:
+    def _worth_asking(self, parts: Instances, tables: dict[Subject, Table]) -> Iterator[Proposition]:
         """Yield the instances with an anchor that is true in some profile; without anchors, yield all."""
         anchor = parts.anchor
         if anchor is None:
@@ -237,4 +335,4 @@ def _subjects(formula: Proposition) -> Iterator[Subject]:
             for part in (parts.body,) if isinstance(parts, Instances) else parts:
                 yield from _subjects(part)
         case _:
-            yield subject(formula)
+            yield from subjects_of_atom(formula)

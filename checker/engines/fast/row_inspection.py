@@ -24,8 +24,9 @@ from checker.engines.fast.decision_leaves import (
 from checker.engines.fast.learner import TransitionGroup
 from checker.engines.fast.proposition_table import Profiles
 from checker.engines.fast.row_survey import RowSurvey, distinct
-from checker.limits import look
+from checker.limits import BoundMet, look
 from checker.properties.findings import Collected, Key
+from checker.properties.flown_stances import FlownStances
 from checker.properties.inspections import Excerpt, Inspection, Invariant, Reachability, Rules
 from checker.properties.invariant_vacuity import bindings, truth
 from checker.properties.races import ControlRaces
@@ -56,6 +57,8 @@ def inspect_fast(survey: RowSurvey, inspections: Iterable[Inspect]) -> None:
                 continue
             case Visited():
                 look_at_visited(survey, each)
+            case FlownStances():
+                look_at_flights(survey, each)
             case Invariant():
                 look_at_invariant(survey, each)
             case Reachability():
@@ -320,6 +323,19 @@ def look_at_reachability(survey: RowSurvey, inspection: Reachability) -> None:
     true = np.flatnonzero(truths(survey, inspection.formula, survey.size))
     if len(true):
         inspection.collected.examined, inspection.collected.example = len(true), int(true[0])
+
+
+# --- flights -----------------------------------------------------------------------------------------------------
+
+
+def look_at_flights(survey: RowSurvey, inspection: FlownStances) -> None:
+    """Collect the stances of entities in transit, alone and in pairs; a bound that is met leaves some out."""
+    try:
+        for question in inspection.questions():
+            for answer in survey.answers(question):
+                inspection.note(answer.value)
+    except BoundMet as met:
+        inspection.bounds.append(met.bound)
 
 
 # --- visited places and events --------------------------------------------------------------------------------

@@ -39,7 +39,9 @@ from checker.engines.zones import explorer as zones
 from specs.elaboration import read_mission
 
 FEATURES = tuple(
-    each for each in Feature if each not in (Feature.WORKERS, Feature.RESUME, Feature.MEMORY, Feature.MODEL)
+    each
+    for each in Feature
+    if each not in (Feature.WORKERS, Feature.RESUME, Feature.MEMORY, Feature.MODEL, Feature.ATOMIC)
 )
 ENGINES = {Feature.REFERENCE: Engine.REFERENCE, Feature.FAST: Engine.FAST, Feature.RAY: Engine.RAY}
 PAIRS = tuple(pair for pair in combinations(FEATURES, 2) if not {*pair} <= {*ENGINES})
@@ -60,7 +62,7 @@ timing {
 }"""
 
 
-def text_of(robots, rooms, runs, timing):
+def text_of(robots, rooms, runs, timing, ways=False):
     """Return a mission of some robots that are alike, which look, and go to rooms in turn."""
     world = [
         f"  room{i}: Room = box ({37.2 + i / 10:.1f}, -8.6) ({37.15 + i / 10:.2f}, -8.7)"
@@ -85,7 +87,7 @@ check {{
         RUNS if runs else ""
     }
 }}
-{TIMING if timing else ""}
+{TIMING if timing else "control timed" if ways else ""}
 """
 
 
@@ -103,9 +105,10 @@ def marked(one, other):
     if asked >= {Feature.TIMING, Feature.RUNS}:
         return expected.reason  # the language refuses it (LS613)
     timing, runs = Feature.TIMING in asked, Feature.RUNS in asked
+    ways = Feature.WAYS in asked
     rooms = 1 if timing else 1 + PAIRS.index((one, other)) % 2
-    mission = read_mission(text_of(2, rooms, runs, timing))
-    right = check(mission, engine=Engine.REFERENCE, times=timing)
+    mission = read_mission(text_of(2, rooms, runs, timing, ways))
+    right = check(mission, engine=Engine.REFERENCE, times=timing, ways=ways)
     try:
         found = run(mission, asked)
     except CombinationError as refused:
@@ -174,6 +177,7 @@ def _run(mission, asked):
             "threads": 2 if Feature.THREADS in asked else None,
             "cluster": Cluster(2) if Feature.RAY in asked else None,
             "times": Feature.TIMING in asked,
+            "ways": Feature.WAYS in asked,
         }
         for resumed in range(3 if Feature.CHECKPOINT in asked else 0):  # each goes one layer further
             early = replace(limits, interruption=Interruption())
@@ -189,6 +193,8 @@ def differing(mission, asked, found, right):
     pair = pair_of(*asked)
     if found.schedule != right.schedule:
         return "other times of flights than by the reference engine"
+    if found.corridors != right.corridors:
+        return "other ways of flights than by the reference engine"
     for one, other in zip(found.verdicts, right.verdicts, strict=True):
         undecided = one.outcome is Outcome.INCOMPLETE and pair is not None and pair.why is Why.UNDECIDED
         if one.outcome is not other.outcome and not (undecided and one.note.startswith("not decided")):

@@ -1,0 +1,120 @@
+"""Possible moves: the entities that the text of a mission may move, where to, and by which places."""
+
+from collections.abc import Iterable, Iterator
+from contextlib import suppress
+from itertools import product
+from math import prod
+from typing import NamedTuple
+
+from semantics.admission.abstract_values import Abstract
+from semantics.admission.value_flow import ValueFlow, flow_of
+from semantics.behaviours.expressions import Fault
+from semantics.behaviours.program import reachable
+from semantics.behaviours.reaction_rules import NodeTerm, PlaceTerm, Reaction
+from semantics.behaviours.statements import ControlBy
+from semantics.state.configuration import Configuration
+from semantics.state.requests import CTR, FLY
+from semantics.state.setting import Setting
+from semantics.state.signature import Name
+
+MOST_ARGUMENTS = 5_000
+"""The most argument combinations of one control that are examined; with more, it may move everything everywhere."""
+
+
+class PossibleMove(NamedTuple):
+    """A move that a control may request: the agent, the moved entity, the places of its VIA, and its new parent."""
+
+    agent: Name
+    entity: Name
+    via: tuple[Name, ...]
+    place: Name
+
+
+def possible_moves(c: Configuration) -> tuple[PossibleMove, ...]:
+    """Return all moves that agents may request from an initial configuration on, sorted."""
+    flow = flow_of(c.setting)
+    found: set[PossibleMove] = set()
+    for agent in sorted(flow.agents.union(c.alpha.names())):
+        reactions = dict.fromkeys(_requested(c, flow, agent))
+        found.update(move for reaction in reactions for move in _moves(c.setting, agent, reaction))
+    return tuple(sorted(found))
+
+
+def _requested(c: Configuration, flow: ValueFlow, agent: Name) -> Iterator[Reaction | None]:
+    """Yield the reactions that an agent may request; None for any."""
+    if agent in c.alpha:
+        for pending in c.eta.of(agent):
+            if isinstance(pending.request, CTR | FLY):
+                yield pending.request.reaction
+    for number in sorted(_statements(c, flow, agent)):
+        statement = c.setting.program.statements[number]
+        if isinstance(statement, ControlBy):
+            yield from _instances(c.setting, flow, agent, statement)
+
+
+def _statements(c: Configuration, flow: ValueFlow, agent: Name) -> Iterable[int]:
+    """Return the statements that an agent may reach; those of a text without its body are in its code."""
+    known = flow.roles[agent].statements if agent in flow.roles else set[int]()
+    code = c.alpha.code(agent) if agent in c.alpha else ()
+    return known | reachable(c.setting.program, code)
+
+
+def _instances(
+    setting: Setting, flow: ValueFlow, agent: Name, control: ControlBy
+) -> Iterator[Reaction | None]:
+    """Yield the reactions of a control, for all names that its arguments may denote."""
+    if agent in flow.roles and flow.roles[agent].starts:
+        given = [flow.roles[agent].hosts, *(flow.names(agent, each) for each in control.arguments)]
+        ranges = [_entities(setting, each) for each in given]
+    else:
+        ranges = [tuple(sorted(setting.kinds))] * (1 + len(control.arguments))
+    if prod(map(len, ranges)) > MOST_ARGUMENTS:
+        yield None
+        return
+    make = setting.program.reactions[control.name]
+    for host, *names in product(*ranges):
+        with suppress(Fault):  # the command may reject some names
+            reaction = make(host, *names)
+            assert isinstance(reaction, Reaction)
+            yield reaction
+
+
+def _entities(setting: Setting, names: Abstract) -> tuple[Name, ...]:
+    """Return the entities among abstract names, sorted."""
+    if names.anything:
+        return tuple(sorted(setting.kinds))
+    return tuple(
+        sorted(name for name, kind in setting.kinds.items() if name in names.words or kind in names.kinds)
+    )
+
+
+def _moves(setting: Setting, agent: Name, reaction: Reaction | None) -> Iterator[PossibleMove]:
+    """Yield the moves of a reaction, for all nodes and places that its variables may denote."""
+    if reaction is None:
+        yield from (PossibleMove(agent, *pair) for pair in _any(setting))
+        return
+    for node, place in reaction.moves:
+        for entity in _denoted(setting, node):
+            for to in _denoted(setting, place):
+                if _fits(setting, entity, to):
+                    yield PossibleMove(agent, entity, reaction.via, to)
+
+
+def _any(setting: Setting) -> Iterator[tuple[Name, tuple[Name, ...], Name]]:
+    """Yield every move, with every entity as a VIA of each."""
+    every = tuple(sorted(setting.kinds))
+    yield from ((entity, every, to) for entity in every for to in every if _fits(setting, entity, to))
+
+
+def _denoted(setting: Setting, term: NodeTerm | PlaceTerm) -> tuple[Name, ...]:
+    """Return the entities that a term of a reaction may denote."""
+    if isinstance(term, str):
+        return (term,) if term in setting.kinds else ()
+    kind = getattr(term, "kind", None)
+    return tuple(name for name, of in sorted(setting.kinds.items()) if kind in (None, of))
+
+
+def _fits(setting: Setting, entity: Name, place: Name) -> bool:
+    """Whether a place may be the parent of an entity."""
+    inside = setting.kind(entity)
+    return entity != place and setting.signature[setting.kind(place)].may_contain(inside)
