@@ -50,7 +50,7 @@ class Terminal:
     Attributes:
         resting: Returns the verdicts that depend on a finding's assumption.
         vehicles: The vehicles of the run.
-        broken: Whether an assumption broke, or the recording or a plugin failed.
+        broken: Whether an assumption or a property broke, or the recording or a plugin failed.
         state: The state after the last turn.
     """
 
@@ -146,8 +146,9 @@ class Terminal:
 
 
 def _breaks(finding: Finding) -> bool:
-    """Return whether a finding voids the verification: a broken assumption, or a failure with a fallback."""
-    return finding.kind == "broken assumption" or (finding.kind == "failed" and bool(finding.fallback))
+    """Return whether a finding voids the verification: a broken assumption or property, or a failure that stops it."""
+    broken = finding.kind in ("broken assumption", "broken property")
+    return broken or (finding.kind == "failed" and bool(finding.fallback))
 
 
 @contextmanager

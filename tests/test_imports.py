@@ -47,6 +47,7 @@ LIBRARIES = {
         "physical/geodesic_areas.py",
         "physical/geodesic_distances.py",
         "physical/gnomonic.py",
+        "physical/line_foot.py",
         "physical/resting_regions.py",
     ),
     "cv2": ("adapters/camera/libraries.py",),

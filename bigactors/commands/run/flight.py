@@ -21,6 +21,7 @@ from adapters.live.operator_findings import Finding, Reported
 from adapters.live.operator_socket import listening
 from adapters.live.overrides import Overrides
 from adapters.live.plan import Plan
+from adapters.live.property_watch import about_ways
 from adapters.live.run_watchers import Watcher
 from adapters.plugin import Plugin
 from adapters.recording.mcap_files import RecordingError
@@ -139,7 +140,10 @@ def prepare(options: Namespace) -> Flight:
     plugins, owners = plugins_of(options, mission, log)
     check_flyable(mission)
     strict = licence is not None and licence.scheduler is Scheduler.FCFS
-    plan = Plan(mission.initial, owners, mission.precautions, strict)
+    invariants = about_ways(mission.properties)
+    plan = Plan(
+        mission.initial, owners, mission.precautions, strict, invariants=invariants, fixed=mission.fixed
+    )
     before = None if options.resume is None else resume(options.resume, mission)
     company = company_of(options, mission, before)
     if company is not None:
