@@ -75,8 +75,8 @@ def _seen_world(turning: Turning) -> SeenWorld:
 
 
 def _report(turning: Turning, standing: WatchedInvariant) -> None:
-    points = " and ".join(f"({latitude:.5f}, {longitude:.5f})" for latitude, longitude in standing.points)
-    where = f"; at {points}" if points else ""
+    spots = [f"({latitude:.5f}, {longitude:.5f})" for latitude, longitude in standing.points]
+    where = f"; such as at {spots[0]}" if len(spots) == 1 else f"; from {' to '.join(spots)}" if spots else ""
     message = f"invariant '{standing.property}' is broken: {standing.figure}{where}"
     about = next((name for name in standing.entities if name in turning.plan.vehicles), "")
     fallback = turning.plan.precautions.on_broken_property

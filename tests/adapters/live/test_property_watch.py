@@ -64,7 +64,7 @@ def test_two_vehicles_that_come_near_break_their_distance_at_once_with_the_figur
     flown(run, 1.0, WEST, near)
     (message,) = run.messages("broken property")
     assert message.startswith(
-        "invariant 'apart' is broken: uav0 may come within 49 m of uav1; at least 50 m; at (37.01"
+        "invariant 'apart' is broken: uav0 may come within 49 m of uav1; at least 50 m; from (37.01"
     )
     assert [each.fallback for each in run.findings if each.kind == "broken property"] == ["continue"]
     assert not standing(run).holds
@@ -174,7 +174,7 @@ def test_the_way_ahead_counts_as_soon_as_a_vehicle_is_sent():
     assert "GoTo" in run.told
     assert not standing(run, "out").holds
     (message,) = run.messages("broken property")
-    assert message.startswith("invariant 'out' is broken: uav0 may be in mid0; at (37.0")
+    assert message.startswith("invariant 'out' is broken: uav0 may be in mid0; such as at (37.0")
     ((_, longitude),) = standing(run, "out").points
     assert -8.6321 < longitude < -8.6279
 
