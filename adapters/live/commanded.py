@@ -81,6 +81,13 @@ class Commanded:
     rests: Mapping[Name, FlownWay] = field(default_factory=dict)
     begins: Mapping[Name, Geometry] = field(default_factory=dict)
 
+    @classmethod
+    def resumed(cls, count: int, ways: Mapping[Name, FlownWay]) -> Commanded:
+        """Return the commands of a resumed run but for flights: each vehicle has the first point of its last way."""
+        begins = {name: way.end for name, way in ways.items() if len(way.points) == 1 and not way.to}
+        rests = {name: FlownWay(way.points[:1], way.to) for name, way in ways.items() if name not in begins}
+        return cls(count=count, rests=rests, begins=begins)
+
     def __iter__(self) -> Iterator[GivenCommand]:
         """Iterate over all commands that are not confirmed yet."""
         yield from self.flights.values()

@@ -170,7 +170,8 @@ def _remember_flight(turning: Turning, fly: FLY) -> None:
         assert found is not None
         going = journey(turning.c, found, node, place, turning.request_of(fly.agent), turning.plan.first)
         if going is not None:
-            transit = turning.c.structure.physical.transit(node)
-            begin = None if transit is None else centroid(transit.origin.geometry)
+            rest, transit = turning.commanded.rests.get(node), turning.c.structure.physical.transit(node)
+            origin = None if transit is None else centroid(transit.origin.geometry)
+            begin = origin if rest is None else rest.end
             given = GivenCommand(going, fly.agent, turning.now, begin=begin)
             turning.commanded = turning.commanded.flying(node, given)

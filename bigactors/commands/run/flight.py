@@ -97,6 +97,10 @@ def _run(flight: Flight, options: Namespace) -> Exit:
         terminal.goes_on(flight.resumed.broken, flight.resumed.taken)
         if flight.mission.setting.timing is not None and flight.resumed.timers is None:
             tell("the recording lacks the start of the mission: all clocks begin anew")
+        if flight.mission.setting.strays and not flight.resumed.ways:
+            tell(
+                "the recording lacks the ways of vehicles: how far they stray is watched from their next flights on"
+            )
     try:
         with record(flight) as tape, _published(options.publish) as ros:
             lookers = (
@@ -152,7 +156,7 @@ def prepare(options: Namespace) -> Flight:
         known = LiveState(
             before.configuration,
             before.steps,
-            commanded=Commanded(count=before.orders),
+            commanded=Commanded.resumed(before.orders, before.ways),
             overrides=Overrides(before.taken, before.standing_orders),
             due=DueTimes(timers=before.timers, stopped=before.until),
             reported=Reported(count=len(before.broken)),

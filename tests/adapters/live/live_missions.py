@@ -7,6 +7,7 @@ from adapters.live.commanded import Commanded
 from adapters.live.core import advance, started
 from adapters.live.live_state import LiveState
 from adapters.live.plan import Plan
+from adapters.live.property_watch import about_ways
 from adapters.plugin import Accepted, Aged
 from bigactors.cli import main
 from physical import PhysicalProperty, point
@@ -59,8 +60,9 @@ def mission(text, name="tour.mission"):
 
 
 def plan_of(text, precautions=None, strict=False):
-    first = mission(text).initial
-    return Plan(first, {"uav0": "autopilot"}, precautions or LivePolicy(), strict)
+    found = mission(text)
+    watched = {"invariants": about_ways(found.properties), "fixed": found.fixed}
+    return Plan(found.initial, {"uav0": "autopilot"}, precautions or LivePolicy(), strict, **watched)
 
 
 def seen(entity, at, time, plugin="autopilot", kind="UAV", channels=("control:gcs0",), **more):
