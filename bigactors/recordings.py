@@ -138,11 +138,11 @@ def resume(path: str, mission: ElaboratedMission) -> Resumed:
         {name: each for name, each in taken.items() if isinstance(each, StandingOrder)},
         None if mission.setting.timing is None else _timers(trace, kept),
         recording.until,
-        _ways(recording.of("ways")),
+        ways_of(recording.of("ways")),
     )
 
 
-def _ways(messages: Iterable[Message]) -> dict[str, FlownWay]:
+def ways_of(messages: Iterable[Message]) -> dict[str, FlownWay]:
     """Return the last way of each vehicle, of those that have one."""
     ways: dict[str, FlownWay] = {}
     for message in messages:

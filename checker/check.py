@@ -10,6 +10,7 @@ from checker.engines.capabilities import CombinationError, engines, features, re
 from checker.engines.choose import explore_by
 from checker.engines.contract import Cluster, Engine, Exploration, Keeping, Options, Reporter
 from checker.limits import BoundMet, CheckPart, Limits, Stop, bounded
+from checker.properties.assumed_ways import assumed_ways
 from checker.properties.coverage import coverage
 from checker.properties.findings import MOST_VIOLATIONS, Collected
 from checker.properties.inspections import (
@@ -112,6 +113,7 @@ def check(  # noqa: PLR0913 - independent options
     """
     initial, asked, notes = _asked(start, properties, notes)
     initial, limits = watching(initial, asked), limits or Limits()
+    notes = (*notes, *assumed_ways(initial.setting))
     formulas, reductions = [each.formula for each in asked if each.kind.has_proposition], tuple(reduce)
     timing = initial.setting.timing is not None
     wanted = features(limits, keeping, reductions, cluster=cluster, threads=threads, timing=timing)

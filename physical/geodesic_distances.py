@@ -227,6 +227,8 @@ def _vectors(positions: Positions) -> Any:
 
 
 MOST_CELLS: Final = 20_000
+"""More undecided triangles are in doubt."""
+
 SMALLEST_CELL: Final = 0.2
 """Metres: a smaller cell is in doubt."""
 
@@ -246,18 +248,23 @@ def lies_within(a: GeodesicArea, b: GeodesicArea, metres: float) -> bool:
         return False
     frame, _ = shared_frame(a.disc, b.disc)
     whole, target = projected(a, frame), projected(b, frame)
-    grown = target.buffer(CHORD_ROOM)
-    shapely.prepare(grown)
+    room = target.buffer(CHORD_ROOM)
+    shapely.prepare(room)
     cells = _triangles(whole)
-    for _ in range(64):
-        cells = cells[shapely.intersects(_drawn(cells), whole)]
-        undecided = _undecided(cells, frame, b, grown, metres) if len(cells) else cells
-        if not len(undecided):
-            return True
-        if len(undecided) > MOST_CELLS or _sides(undecided).min() < SMALLEST_CELL:
+    while len(cells):
+        corners, of_cell = np.unique(cells.reshape(-1, 2), axis=0, return_inverse=True)
+        found = feet_on(frame.positions(corners), b)
+        far = corners[found.metres > metres]
+        if shapely.intersects_xy(whole, far[:, 0], far[:, 1]).any():
             return False
-        cells = _quartered(undecided)
-    return False
+        of_cell = of_cell.ravel()
+        feet = Feet(found.metres[of_cell].reshape(-1, 3), frame.plane(found.feet)[of_cell].reshape(-1, 3, 2))
+        cells = cells[~_are_reached(cells, feet, room, metres)]
+        if len(cells) > MOST_CELLS or (_sides(cells) < SMALLEST_CELL).any():
+            return False
+        cells = _quartered(cells)
+        cells = cells[shapely.intersects(_drawn(cells), whole)]
+    return True
 
 
 def _triangles(shape: shapely.Geometry) -> Any:
@@ -271,21 +278,15 @@ def _triangles(shape: shapely.Geometry) -> Any:
 
 def _drawn(cells: Any) -> Any:
     """Return cells as shapes: the flat ones as lines or points."""
-    return shapely.convex_hull(shapely.multipoints([shapely.points(cell) for cell in cells]))
+    return shapely.convex_hull(shapely.linestrings(cells))
 
 
-def _undecided(
-    cells: Any, frame: GnomonicFrame, area: GeodesicArea, grown: shapely.Geometry, metres: float
-) -> Any:
-    """Return the cells that may have a point farther than `metres` from an area."""
-    corners = cells.reshape(-1, 2)
-    found = feet_on(frame.positions(corners), area)
-    apart, feet = found.metres.reshape(-1, 3).max(axis=1), frame.plane(found.feet).reshape(-1, 3, 2)
-    sides = _sides(cells)
-    bent = CHORD_ROOM + 1.1 * apart * (sides / SPHERE) ** 2 / 6
-    linked = shapely.contains(grown, _drawn(feet)) & (apart + bent <= metres)
-    reached = found.metres.reshape(-1, 3).min(axis=1) + sides <= metres
-    return cells[~(linked | reached)]
+def _are_reached(cells: Any, feet: Feet, room: shapely.Geometry, metres: float) -> Any:
+    """Return which cells have no point farther than `metres` from an area, by the feet of their corners on it."""
+    most, sides = feet.metres.max(axis=1), _sides(cells)
+    bent = CHORD_ROOM + 1.1 * most * (sides / SPHERE) ** 2 / 6
+    linked = shapely.contains(room, _drawn(feet.feet)) & (most + bent <= metres)
+    return linked | (feet.metres.min(axis=1) + sides <= metres)
 
 
 def _sides(cells: Any) -> Any:

@@ -132,7 +132,8 @@ class Ways:
 
     def _in_transit(self, entity: str, at: Transit, flights: Sequence[FlightPlan]) -> list[RegionPart]:
         begin, margin = self._begin(entity, at.origin)
-        altitude = self._altitude(at.origin, sorted(self._carriers_in(entity, at, flights)))
+        bearers = self._carriers_in(entity, at, flights).union(self._of.bringers(entity, at.origin.geometry))
+        altitude = self._altitude(at.origin, sorted(bearers))
         plans = [(*flight.via, flight.to) for flight in flights]
         steps = sorted({name for plan in plans for name in plan})
         if len(plans) == 1 and all(map(self._of.is_steady, steps)):
@@ -157,7 +158,7 @@ class Ways:
         return list(self._resting.stay(entity, origin)), self._resting.margin(entity, origin.geometry)
 
     def _carriers_in(self, entity: str, at: Transit, flights: Iterable[FlightPlan]) -> frozenset[str]:
-        """Return the carriers that an entity leaves or boards by its flights."""
+        """Return the carriers that an entity leaves or boards by its flights, as far as these name them."""
         carriers = self._of.motion(entity).carriers
         ends = {at.to, *(name for flight in flights for name in (flight.to, flight.start))}
         return frozenset(ends & carriers)

@@ -1,12 +1,12 @@
 """Compute the facts that regions need, once, from a mission's text and its initial configuration."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 
 from physical import EntityMotion
 from physical.place_nesting import Place
 from semantics.environment import Appears, Drifts, Vanishes
 from semantics.regions.possible_moves import PossibleMove, possible_moves
-from semantics.regions.region_facts import RegionFacts
+from semantics.regions.region_facts import RegionFacts, reached
 from semantics.state.configuration import Configuration
 from semantics.state.physical_model import Carried, InTransit, Placed, Placement
 from semantics.state.setting import Setting
@@ -40,7 +40,7 @@ class _Gathering:
             requested[move.entity].append(move)
         self.carriers = {name: self._carriers(name, moves) for name, moves in requested.items()}
         self.moves = {name: moves if self._may_move(name) else [] for name, moves in requested.items()}
-        self.bearers = {name: _reached(name, self.carriers) for name in requested}
+        self.bearers = {name: reached(name, self.carriers.__getitem__) for name in requested}
         self.vanishing = frozenset(e.entity for e in self.setting.environment if isinstance(e, Vanishes))
 
     def _carriers(self, name: Name, moves: Iterable[PossibleMove]) -> frozenset[Name]:
@@ -82,16 +82,6 @@ class _Gathering:
             circle=_circle(setting, name),
             drift=None if drift is None else drift.arrangement,
         )
-
-
-def _reached(start: Name, leads: Mapping[Name, frozenset[Name]]) -> frozenset[Name]:
-    """Return the names that a name leads to, at any depth, with itself."""
-    seen, waiting = {start}, [start]
-    while waiting:
-        more = leads[waiting.pop()] - seen
-        seen |= more
-        waiting += sorted(more)
-    return frozenset(seen)
 
 
 def _given(c: Configuration, name: Name) -> Iterable[Placement]:

@@ -12,6 +12,7 @@ from pyproj import Geod
 from adapters.recording.recording_reader import read_recording
 from adapters.simulated import Kind, Vehicle, run
 from bigactors.arguments import parse_arguments
+from bigactors.cli import main
 from bigactors.commands.run.flight import prepare, record
 from bigactors.flight_watchers import Terminal
 from bigactors.mistakes import Mistake
@@ -94,8 +95,9 @@ def test_a_vehicle_that_is_blown_off_its_way_breaks_strays_and_holds(tmp_path, c
         each.data["ring"][0] for each in heard if each.data["entity"] == "uav0" and each.time <= broken.time
     ][-1]
     assert figure == pytest.approx(off_line([each / 1e7 for each in at]), abs=1.0)
-    assert "vehicles hold, as the mission says" in capsys.readouterr().err
-    assert vehicle.mode == vehicle.kind.profile.guided
+    assert "confirmed: uav0 holds, as the mission ordered" in capsys.readouterr().err
+    assert main(["replay", str(tmp_path / "r.mcap")]) == 0
+    assert f"broken assumption: {broken.message}" in capsys.readouterr().err
 
 
 def test_a_vehicle_in_calm_air_keeps_to_its_way_and_commits(tmp_path, capsys):

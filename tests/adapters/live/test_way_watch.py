@@ -5,9 +5,14 @@ from live_missions import EAST, TOUR, WEST, Run, mission, seen
 from pyproj import Geod
 
 from adapters.live.batch import Batch
-from adapters.live.core import watch
+from adapters.live.commanded import Commanded
+from adapters.live.core import resumed, watch
+from adapters.live.live_state import LiveState
 from adapters.live.plan import Plan
 from adapters.plugin import Hold, TakenOver
+from adapters.recording.encoding import ways_json
+from adapters.recording.mcap_files import Message
+from bigactors.recordings import ways_of
 from physical import Band
 from semantics.live_policy import Fallback, LivePolicy
 
@@ -124,3 +129,41 @@ def test_a_vehicle_does_not_arrive_below_its_band():
     assert "commit" not in run.rules
     run.turn(2.0, seen("uav0", EAST, 2.0, altitude=Band(101, 101)))
     assert "commit" in run.rules
+
+
+# --- resumed runs
+
+
+def recorded_ways(run):
+    """The ways of a run as its recording has them."""
+    return ways_of(
+        [Message("ways", 0.0, {"vehicle": name, "way": way}) for name, way in ways_json(run.state).items()]
+    )
+
+
+def test_a_resumed_run_watches_a_vehicle_at_the_point_where_it_stays():
+    run = flying()
+    run.turn(1.0, seen("uav0", EAST, 1.0))
+    assert "commit" in run.rules
+    known = LiveState(
+        run.state.configuration, run.state.number, commanded=Commanded.resumed(1, recorded_ways(run))
+    )
+    run.state = resumed(run.plan, known, 2.0)
+    run.turn(3.0, seen("uav0", on_line(1.0, 99.0), 3.0))
+    assert broken(run) == []
+    run.turn(4.0, seen("uav0", on_line(1.0, 103.0), 4.0))
+    assert [each.split(" from ")[0] for each in broken(run)] == ["uav0 is 103 m"]
+
+
+def test_a_resumed_run_watches_a_flight_from_the_point_at_which_it_began():
+    run = flying()
+    run.turn(1.0, seen("uav0", on_line(0.2), 1.0))
+    known = LiveState(
+        run.state.configuration, run.state.number, commanded=Commanded.resumed(1, recorded_ways(run))
+    )
+    run.state = resumed(run.plan, known, 2.0)
+    assert [round(each, 6) for each in run.state.commanded.flights["uav0"].begin.vertices[0]] == [*WEST]
+    run.turn(3.0, seen("uav0", on_line(0.3, 98.0), 3.0))
+    assert broken(run) == []
+    run.turn(4.0, seen("uav0", on_line(0.3, 104.0), 4.0))
+    assert [each.split(" from ")[0] for each in broken(run)] == ["uav0 is 104 m"]

@@ -16,6 +16,7 @@ LANGUAGE = {
     "spawn": (NO, YES),
     "families": (NO, YES),
     "races": (NO, YES),
+    "regions": (NO, "plain", "strays"),
     "ltl": (NO, "plain", "fair"),
     "ctl": (NO, YES),
     "progress": (NO, YES),
@@ -70,6 +71,7 @@ def _world(row, draw):
 
 def _programs(row, draw):
     go = draw.choice(["sea1", "slick0"])
+    go += " VIA sea0" if row["regions"] != NO and draw.random() < 0.5 else ""
     looking = f"observe(CHILDREN(sea0)) react {{ case o => control(MOVE_HOST_TO {go}) }}"
     cases = f"case o if not (uav0 in o) => control(MOVE_HOST_TO {go}) case o => skip"
     tested = f"observe(CHILDREN(sea1)) react {{ {cases} }}"
@@ -116,6 +118,7 @@ def _environment(row):
         ("channels", "leave"): "uav1 leaves wifi and returns",
         ("control", "timed"): "uav0 arrives",
     }
+    clauses["regions", "strays"] = "UAV strays at most 5 m"
     chosen = [clause for choice, clause in clauses.items() if choice in row.items()]
     return "environment {\n  " + "\n  ".join(chosen) + "\n}\n" if chosen else ""
 
@@ -158,10 +161,20 @@ def _asked(row):
         'reachable "both": actually uav0 in sea1 and actually uav1 in sea1',
         'invariant "one at a time": not (actually uav0 in slick0 and actually uav1 in slick0)',
     ]
+    if row["regions"] != NO:
+        asked += [
+            'invariant "apart": forall x, y: UAV . x != y -> x at least 5 m from y',
+            'invariant "no way over it": not possibly uav0 in slick0',
+            'reachable "over it": possibly uav1 in slick0 and not actually uav1 in slick0',
+            'reachable "surely there": surely uav0 in sea1',
+            'invariant "in range": actually uav0 in sea0 -> uav0 within 150 m of gcs0',
+        ]
     asked += ["race_freedom"] if row["races"] == YES else []
     asked += ['time "gone": actually uav1 in sea1'] if row["timing"] == YES else []
     fair = {"plain": "", "fair": " under weak fairness of agents, requests"}
     if row["ltl"] != NO:
+        if row["regions"] != NO:
+            asked.append('ltl "parts": <> uav0 at least 60 m from uav1 or [] not possibly uav0 in slick0')
         asked.append(f'ltl "leaves"{fair[row["ltl"]]}: <> not actually uav0 in sea0')
         asked.append(
             f'ltl "stays away"{fair[row["ltl"]]}: [] (actually uav0 in sea1 -> [] actually uav0 in sea1)'

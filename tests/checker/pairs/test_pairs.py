@@ -46,6 +46,9 @@ def supported(row):
     if row["timing"] == YES and row["control"] == "atomic":
         refused_by_name(row, "a mission with 'timing' has control that takes time")
         row = {**row, "control": "timed"}
+    if row["regions"] != NO and row["control"] == "atomic":
+        refused_by_name(row, "nothing is under way")
+        row = {**row, "regions": NO}
     if row["timing"] == YES and row != {**row, **OF_RUNS}:
         refused_by_name(row, "timing")
         row = {**row, **OF_RUNS}

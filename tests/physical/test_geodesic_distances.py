@@ -1,0 +1,125 @@
+"""Nearest and farthest points of geodesic areas, held to samples of their borders."""
+
+import numpy as np
+import pytest
+from drawing_regions import geometry, hull, rings
+from oracles.random_places import WORLDS, place
+from oracles.sampled_geodesics import apart, away, extreme, feet, metres, on_ring, surrounded
+from scale import seeds
+
+from physical import RegionError, box, circle, point
+from physical.geodesic_areas import area_of, source_area
+from physical.geodesic_distances import feet_on, greatest_distance_of, lies_within, nearest_line
+from physical.regions import RegionPart
+
+
+def drawn(seed):
+    """Return two random areas of one world: places or hulls of two, each with its rings."""
+    rng = np.random.default_rng(seed)
+    name = list(WORLDS)[seed % len(WORLDS)]
+    found = []
+    for _ in range(2):
+        sources = [geometry(place(rng, *WORLDS[name])) for _ in range(rng.integers(1, 3))]
+        found.append(area_of(hull(*sources) if len(sources) > 1 else RegionPart((sources[0],))))
+    return found
+
+
+@seeds(3_000, 27)
+def test_the_nearest_points_are_as_near_as_any_two_and_lie_in_their_areas(seed):
+    a, b = drawn(seed)
+    line = nearest_line(a, b)
+    assert metres(line.first, line.second)[0] == pytest.approx(line.metres, abs=1e-6)
+    assert away(line.first, rings(a)) <= 0.06
+    assert away(line.second, rings(b)) <= 0.06
+    [one], [other] = rings(a), rings(b)
+    meet = any(len(x) > 2 and surrounded(y, x).any() for x, y in ((one, other), (other, one)))
+    sampled = 0.0 if meet else extreme(one, other)
+    assert line.metres <= sampled + 0.06
+    if line.metres > 0.0:
+        assert line.metres >= sampled - 0.05 - 1e-5 * sampled
+
+
+@seeds(600, 18)
+def test_the_greatest_distance_is_that_of_the_farthest_points(seed):
+    a, b = drawn(seed)
+    [one], [other] = rings(a), rings(b)
+    sampled = apart(one, other).max()
+    found = greatest_distance_of(a, b)
+    assert found == pytest.approx(sampled, abs=1e-3)
+    assert extreme(one, other, best=np.max) <= found + 1e-3
+
+
+@seeds(600, 18)
+def test_feet_are_the_nearest_points(seed):
+    a, b = drawn(seed)
+    [one] = rings(a)
+    found = feet_on(one, b)
+    assert found.metres == pytest.approx(away(one, rings(b)), abs=2e-3)
+    assert metres(one, found.feet) == pytest.approx(found.metres, abs=1e-6)
+    assert away(found.feet, rings(b)).max() <= 0.01
+
+
+@seeds(300, 9)
+def test_an_area_lies_within_some_metres_of_another_as_its_farthest_point_does(seed):
+    a, b = drawn(seed)
+    rng = np.random.default_rng(seed)
+    [one] = rings(a)
+    corners = one[rng.integers(0, len(one), 400)]
+    inner = np.array([_mixed(corners[rng.integers(0, 400, 3)], rng) for _ in range(20)])
+    some = inner[away(inner, rings(a)) == 0.0] if len(one) > 2 else one
+    sampled = away(np.concatenate([one, some]), rings(b)).max()
+    assert not lies_within(a, b, sampled - 0.01)
+    if _is_convex(b):
+        border = away(on_ring(one, np.linspace(0, 1, 40)), rings(b)).max()
+        assert lies_within(a, b, max(border, sampled) * 1.001 + 0.5)
+
+
+def _mixed(three, rng):
+    shares = rng.dirichlet([1, 1, 1])
+    east = three[0, 0] + (three[:, 0] - three[0, 0] + 180.0) % 360.0 - 180.0
+    return [float(shares @ east), float(shares @ three[:, 1])]
+
+
+def _is_convex(area):
+    """Whether the nearest point of an area is unique, so that the farthest point of another is on its border."""
+    return area.shape.geom_type != "Polygon" or area.shape.equals(area.shape.convex_hull)
+
+
+def test_the_dent_of_a_place_is_far_from_it():
+    """The farthest point of an area in the dent of another is inside the area, not on its border."""
+    corners = [(0, 0), (3, 0), (3, 3), (2, 3), (2, 1), (1, 1), (1, 3), (0, 3)]
+    horseshoe = geometry(np.array(corners) / 10)
+    dent = source_area(box((0.1, 0.1), (0.4, 0.2)))
+    ends = metres([0.1, 0.3], [0.15, 0.3])[0]
+    assert not lies_within(dent, source_area(horseshoe), ends - 20)
+    assert lies_within(dent, source_area(horseshoe), 12_500)
+
+
+def test_the_side_of_an_area_between_two_corners_is_farther_than_both():
+    """A parallel of the shore: both ends of a line 50 km off are nearer than its middle, by the earth's curvature."""
+    shore = area_of(hull(point(0.0, -1.0), point(0.0, 1.0)))
+    north = 50_000 / 110_574
+    off = area_of(hull(point(north, -0.45), point(north, 0.45)))
+    ends = feet([-0.45, north], rings(shore)[0])[0]
+    middle = feet([0.0, north + 1e-9], rings(shore)[0])[0]
+    assert not lies_within(off, shore, ends - 0.01)
+    assert lies_within(off, shore, middle + 2.0)
+
+
+def test_areas_that_meet_are_no_metre_apart_and_the_point_is_in_both():
+    one, other = source_area(box((37.0, -9.0), (37.2, -8.8))), source_area(circle((37.1, -8.8), 900))
+    line = nearest_line(one, other)
+    assert line.metres == 0.0
+    assert line.first == line.second
+    assert away(line.first, rings(one)) == away(line.first, rings(other)) == 0.0
+
+
+def test_a_point_and_a_point_have_the_distance_of_pyproj_wherever_they_are():
+    a, b = source_area(point(37.0, -8.0)), source_area(point(-37.0, 171.9))
+    assert nearest_line(a, b).metres == metres([-8.0, 37.0], [171.9, -37.0])[0]
+
+
+def test_a_comparison_that_reaches_too_far_is_refused():
+    a, b = source_area(box((37, -9), (38, -8))), source_area(box((37, 20), (38, 21)))
+    with pytest.raises(RegionError, match="a comparison of two regions reaches"):
+        nearest_line(a, b)
