@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+import math
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
+from functools import reduce
 from typing import Final, assert_never
 
 from adapters.live.fallbacks import breaks
@@ -11,13 +13,12 @@ from adapters.live.seen_regions import SeenWorld
 from adapters.live.turn_in_progress import Turning
 from adapters.live.watched import Position, WatchedInvariant
 from physical import Geometry, Located, PhysicalError, centroid, nearest, possible_point
-from physical.geodesic_areas import area_of
+from physical.geodesic_areas import area_of, disc_of
 from physical.geodesic_distances import greatest_distance_of
-from physical.part_relations import least_bound
-from physical.region_relations import altitude_gap, surely_in
-from semantics.properties.kinds import PropertyKind
-from semantics.properties.property import Property, asks_of_regions
-from semantics.properties.propositions import And, Instances, Not, Or, Proposition, holds
+from physical.gnomonic import Disc, around
+from physical.region_relations import surely_in
+from semantics.properties.property import Property
+from semantics.properties.propositions import And, Atom, Not, Or, Proposition, atoms_of, holds
 from semantics.properties.region_atoms import (
     ApartFrom,
     PossiblyIn,
@@ -27,24 +28,22 @@ from semantics.properties.region_atoms import (
     operands,
 )
 from semantics.regions.region_truth import relates
+from semantics.state.signature import Name
 
 PAUSE: Final = 0.2
 """The least seconds between two looks."""
 
-ATOMS_PER_SECOND: Final = 2_500
-"""The most comparisons of two entities in a second, on average: many take longer pauses."""
+MOST_COMPARED: Final = 50
+"""The most pairs of entities, of those near each other, that one look measures: the others wait for the next."""
 
 CALM: Final = 10.0
 """Seconds for which a broken invariant must hold until it is reported again."""
 
+DOUBT: Final = 10.0
+"""Metres, more than the error of all figures."""
+
 MOST_MEASURED: Final = 3
 """The number of pairs, the nearest by rough bounds, that are measured for a figure."""
-
-
-def about_ways(properties: Iterable[Property]) -> tuple[Property, ...]:
-    """Return the invariants about ways."""
-    invariants = (each for each in properties if each.kind is PropertyKind.INVARIANT)
-    return tuple(each for each in invariants if asks_of_regions((each,)))
 
 
 def watch_properties(turning: Turning) -> None:
@@ -53,6 +52,7 @@ def watch_properties(turning: Turning) -> None:
     if not asked or turning.now < turning.watched.again:
         return
     look = PropertyComparison(_seen_world(turning))
+    look.compare((atom for each in asked for atom in atoms_of(each.formula)), turning.watched.compared)
     broken, standings = dict(turning.watched.broken), []
     for each in asked:
         standing = look.standing(each)
@@ -64,8 +64,8 @@ def watch_properties(turning: Turning) -> None:
                 _report(turning, standing)
         elif last is not None and turning.now - last >= CALM:
             del broken[each.name]
-    again = turning.now + max(PAUSE, len(look.truths) / ATOMS_PER_SECOND)
-    turning.watched = turning.watched.looked(tuple(standings), broken, again)
+    again = turning.now + PAUSE
+    turning.watched = turning.watched.looked(tuple(standings), broken, look.compared, again)
 
 
 def _seen_world(turning: Turning) -> SeenWorld:
@@ -85,10 +85,46 @@ def _report(turning: Turning, standing: WatchedInvariant) -> None:
 
 @dataclass(frozen=True, eq=False)
 class PropertyComparison:
-    """One look at the invariants: each pair of entities is compared once."""
+    """One look at the invariants.
+
+    Attributes:
+        world: What is seen.
+        truths: The truth of each atom.
+        compared: The truth of the atoms that rough bounds do not decide, and the time of its computation.
+        discs: A disc around the region of each entity, if it has one.
+    """
 
     world: SeenWorld
     truths: dict[RegionAtom, bool] = field(default_factory=dict)
+    compared: dict[RegionAtom, tuple[bool, float]] = field(default_factory=dict)
+    discs: dict[Name, Disc | None] = field(default_factory=dict)
+
+    def compare(self, atoms: Iterable[Atom], before: Mapping[RegionAtom, tuple[bool, float]]) -> None:
+        """Compute the truth of atoms about ways.
+
+        Rough bounds decide most of them. Of the others those that were compared longest ago are measured, at most so
+        many that the run goes on; the rest keep their last truth, or are harmless until they are measured.
+        """
+        left = []
+        for atom in dict.fromkeys(atoms):
+            if isinstance(atom, RegionAtom):
+                roughly = self._by_discs(atom)
+                if roughly is None:
+                    left.append(atom)
+                else:
+                    self.truths[atom] = roughly
+        if len(left) > MOST_COMPARED:
+            left.sort(
+                key=lambda atom: (before[atom][1] if atom in before else -math.inf, self._roughly(atom))
+            )
+        for count, atom in enumerate(left):
+            known = before.get(atom)
+            if count < MOST_COMPARED:
+                u, v = map(self.world.located, operands(atom))
+                known = is_true(atom, u, v), self.world.now
+            if known is not None:
+                self.compared[atom] = known
+            self.truths[atom] = not isinstance(atom, PossiblyIn) if known is None else known[0]
 
     def standing(self, asked: Property) -> WatchedInvariant:
         """Return how an invariant stands."""
@@ -106,21 +142,34 @@ class PropertyComparison:
             case Not(inner):
                 return not self.holds(inner)
             case And(parts):
-                return all(map(self.holds, self._asked(parts)))
+                return all(map(self.holds, parts))
             case Or(parts):
-                return any(map(self.holds, self._asked(parts)))
+                return any(map(self.holds, parts))
             case PossiblyIn() | SurelyIn() | ApartFrom() | WithinRangeOf():
-                return self._is_true(formula)
+                return self.truths[formula]
         return holds(formula, self.world.c)
 
-    def _asked(self, parts: tuple[Proposition, ...] | Instances) -> Iterator[Proposition]:
-        asked = parts.worth_asking(self.world.c) if isinstance(parts, Instances) else parts
-        yield from asked
+    def _by_discs(self, atom: RegionAtom) -> bool | None:
+        """Return the truth of an atom as far as the discs around both regions decide it."""
+        least = self._least(*operands(atom))
+        match atom:
+            case ApartFrom(distance=distance) if least >= distance:
+                return True
+            case PossiblyIn() if least > DOUBT:
+                return False
+        return None
 
-    def _is_true(self, atom: RegionAtom) -> bool:
-        if atom not in self.truths:
-            self.truths[atom] = is_true(atom, *map(self.world.located, operands(atom)))
-        return self.truths[atom]
+    def _least(self, one: Name, other: Name) -> float:
+        """Return a rough lower bound of the metres between two entities; negative where one may be anywhere."""
+        a, b = self._disc(one), self._disc(other)
+        return -math.inf if a is None or b is None else a.least(b)
+
+    def _disc(self, entity: Name) -> Disc | None:
+        if entity not in self.discs:
+            found = self.world.located(entity)
+            parts = () if found is None else found.region.parts
+            self.discs[entity] = reduce(around, map(disc_of, parts)) if parts else None
+        return self.discs[entity]
 
     def _deciding(self, formula: Proposition, *, wanted: bool) -> Iterator[RegionAtom]:
         """Yield the atoms that give a formula its truth value."""
@@ -128,7 +177,7 @@ class PropertyComparison:
             case Not(inner):
                 yield from self._deciding(inner, wanted=not wanted)
             case And(parts) | Or(parts):
-                for part in self._asked(parts):
+                for part in parts:
                     if self.holds(part) is wanted:
                         yield from self._deciding(part, wanted=wanted)
             case PossiblyIn() | SurelyIn() | ApartFrom() | WithinRangeOf():
@@ -138,25 +187,16 @@ class PropertyComparison:
 
     def _roughly(self, atom: RegionAtom) -> float:
         """Return a rough measure of how near an atom is to its limit, for a choice among many."""
-        return self._measured(atom, least_distance)
+        return _beyond(atom, self._least(*operands(atom)))
 
     def _exactly(self, atom: RegionAtom) -> float:
-        return self._measured(atom, nearest_distance)
-
-    def _measured(self, atom: RegionAtom, measure: Callable[[Located, Located], float]) -> float:
         u, v = map(self.world.located, operands(atom))
         if u is None or v is None:
-            return -float("inf")
+            return -math.inf
         try:
-            metres = measure(u, v)
+            return _beyond(atom, nearest_distance(u, v))
         except PhysicalError:
-            return -float("inf")
-        match atom:
-            case ApartFrom(distance=distance):
-                return metres - distance
-            case PossiblyIn():
-                return metres
-        return -metres
+            return -math.inf
 
     def _figure(self, atom: RegionAtom) -> Figure:
         one, other = operands(atom)
@@ -176,6 +216,16 @@ class PropertyComparison:
         if age is None:
             return f"{entity} is not seen and may be anywhere"
         return f"{entity} was seen {age:.0f} s ago, and nothing bounds its speed"
+
+
+def _beyond(atom: RegionAtom, metres: float) -> float:
+    """Return by how much a distance is beyond an atom's limit; the least one is shown."""
+    match atom:
+        case ApartFrom(distance=distance):
+            return metres - distance
+        case PossiblyIn():
+            return metres
+    return -metres
 
 
 def is_true(atom: RegionAtom, u: Located | None, v: Located | None) -> bool:
@@ -243,7 +293,8 @@ def _apart(atom: ApartFrom, u: Located, v: Located) -> Figure:
     found = nearest(u, v, up) or nearest(u, v)
     assert found is not None
     beside = f", {found.gap:.0f} m above or below" if found.gap else ""
-    words = f"{one} may come within {int(found.metres)} m of {other}{beside}; {least}"
+    near = "may meet" if found.metres < 1 and not found.gap else f"may come within {int(found.metres)} m of"
+    words = f"{one} {near} {other}{beside}; {least}"
     return Figure(words, (_position(found.first), _position(found.second)))
 
 
@@ -262,18 +313,10 @@ def _middles(u: Located, v: Located) -> tuple[Position, ...]:
     return tuple(_position(centroid(source)) for source in sources if isinstance(source, Geometry))
 
 
-def least_distance(u: Located, v: Located) -> float:
-    """Return a lower bound of the metres between two regions, which costs little."""
-    pairs = ((a, b) for a in u.region.parts for b in v.region.parts)
-    return min(
-        (least_bound(a, b) + altitude_gap(a.altitude, b.altitude) for a, b in pairs), default=float("inf")
-    )
-
-
 def nearest_distance(u: Located, v: Located) -> float:
     """Return the metres between two regions on the ground."""
     found = nearest(u, v)
-    return float("inf") if found is None else found.metres
+    return math.inf if found is None else found.metres
 
 
 def greatest_distance(u: Located, v: Located) -> float:

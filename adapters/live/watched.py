@@ -6,6 +6,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
+from semantics.properties.region_atoms import RegionAtom
 from semantics.state.signature import Name
 
 Position = tuple[float, float]
@@ -40,6 +41,7 @@ class Watched:
         levelled: The vehicles that have reached their bands since their take-off.
         off_level: Those of them that have left their bands.
         standings: The invariants about ways, as of the last look.
+        compared: The truth of the atoms that were measured, and the time.
         again: Time of the next look.
         broken: The last time at which each broken invariant was false.
     """
@@ -48,6 +50,7 @@ class Watched:
     levelled: frozenset[Name] = frozenset()
     off_level: frozenset[Name] = frozenset()
     standings: tuple[WatchedInvariant, ...] = ()
+    compared: Mapping[RegionAtom, tuple[bool, float]] = field(default_factory=dict)
     again: float = -math.inf
     broken: Mapping[str, float] = field(default_factory=dict)
 
@@ -79,7 +82,11 @@ class Watched:
         )
 
     def looked(
-        self, standings: tuple[WatchedInvariant, ...], broken: Mapping[str, float], again: float
+        self,
+        standings: tuple[WatchedInvariant, ...],
+        broken: Mapping[str, float],
+        compared: Mapping[RegionAtom, tuple[bool, float]],
+        again: float,
     ) -> Watched:
         """Return the value after a look at the invariants."""
-        return replace(self, standings=standings, broken=broken, again=again)
+        return replace(self, standings=standings, broken=broken, compared=compared, again=again)

@@ -6,5 +6,5 @@ export function Ways({ app }) {
   if (invariants.size === 0) return null;
   const worstFirst = [...invariants].sort(([a, one], [b, other]) => one.holds - other.holds || byName(a, b));
   return html`<section class="ways" aria-label="Ways"><ul>${worstFirst.map(([name, { holds, figure }]) => html`<li key=${name} class=${holds ? "" : "bad"}>
-    <b>${holds ? "✓" : "✖"} ${name}</b> <span class=${holds ? "quiet" : ""}>${figure || (holds ? "holds" : "is broken")}</span></li>`)}</ul></section>`;
+    <b>${holds ? "✓" : "✖"} ${name}:</b> <span class=${holds ? "quiet" : ""}>${figure || (holds ? "holds" : "is broken")}</span></li>`)}</ul></section>`;
 }

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from adapters.live.ground_formulas import MOST_PARTS, about_ways
 from adapters.live.plan import Plan
-from adapters.live.property_watch import about_ways
 from adapters.plugin import Plugin, circling
 from bigactors.mistakes import Mistake
 from bigactors.terminal import tell
@@ -31,7 +31,7 @@ OF_AGENTS = (Ended, Exists, HasPending, HostedAt, IsBound, VariableIs, Waiting)
 
 def watchable(mission: ElaboratedMission, first: Configuration) -> tuple[Property, ...]:
     """Return the invariants about ways that a run can watch from its first configuration."""
-    return tuple(each for each in about_ways(mission.properties) if not _reads_elsewhere(each, first))
+    return tuple(each for each in about_ways(*mission.properties) if not _reads_elsewhere(each, first))
 
 
 def _reads_elsewhere(asked: Property, first: Configuration) -> bool:
@@ -60,8 +60,10 @@ def unwatched(plan: Plan, mission: ElaboratedMission) -> Iterator[str]:
     for each in mission.properties:
         if not asks_of_regions((each,)) or each.kind is PropertyKind.REACHABLE or each.name in watched:
             continue
-        if each.kind is PropertyKind.INVARIANT:
+        if each.kind is PropertyKind.INVARIANT and is_parted(plan.first):
             yield f"'{each.name}' is not watched at this station: it is about agents that other stations may run"
+        elif each.kind is PropertyKind.INVARIANT:
+            yield f"'{each.name}' is not watched: it compares more than {MOST_PARTS:,} pairs"
         else:
             yield f"'{each.name}' is not watched: of properties about ways, a run watches invariants only"
     if is_parted(plan.first) and plan.invariants:

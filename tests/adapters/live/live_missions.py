@@ -5,9 +5,9 @@ from pathlib import Path
 from adapters.live.batch import Batch, Heard
 from adapters.live.commanded import Commanded
 from adapters.live.core import advance, started
+from adapters.live.ground_formulas import about_ways
 from adapters.live.live_state import LiveState
 from adapters.live.plan import Plan
-from adapters.live.property_watch import about_ways
 from adapters.plugin import Accepted, Aged
 from bigactors.cli import main
 from physical import PhysicalProperty, point
@@ -61,7 +61,7 @@ def mission(text, name="tour.mission"):
 
 def plan_of(text, precautions=None, strict=False):
     found = mission(text)
-    watched = {"invariants": about_ways(found.properties), "fixed": found.fixed}
+    watched = {"invariants": about_ways(*found.properties), "fixed": found.fixed}
     return Plan(found.initial, {"uav0": "autopilot"}, precautions or LivePolicy(), strict, **watched)
 
 

@@ -4,8 +4,9 @@ import pytest
 from live_missions import TWO, Run, mission, seen
 from pyproj import Geod
 
+from adapters.live import property_watch
+from adapters.live.ground_formulas import TooManyPartsError, about_ways, grounded
 from adapters.live.plan import Plan
-from adapters.live.property_watch import about_ways
 from adapters.live.seen_regions import STRONGEST
 from adapters.plugin import Hold, TakenOver
 from physical import Velocity
@@ -38,7 +39,7 @@ def watching(checks, body=STILL, more="", both=True):
         elaborated.initial,
         vehicles,
         elaborated.precautions,
-        invariants=about_ways(elaborated.properties),
+        invariants=about_ways(*elaborated.properties),
         fixed=elaborated.fixed,
     )
     run = Run(plan)
@@ -161,7 +162,7 @@ def sent(checks, body, more=""):
         elaborated.initial,
         {"uav0": "autopilot", "uav1": "autopilot"},
         elaborated.precautions,
-        invariants=about_ways(elaborated.properties),
+        invariants=about_ways(*elaborated.properties),
         fixed=elaborated.fixed,
     )
     run = Run(plan)
@@ -232,3 +233,31 @@ def test_strays_widens_the_way():
     least = min(metres((north, east), (37.0, -8.628)) for east, north, _ in lines)
     assert figure_of(standing(narrow, "far").figure) == pytest.approx(least, abs=1)
     assert figure_of(standing(wide, "far").figure) == pytest.approx(least - 100, abs=1.5)
+
+
+def test_one_look_measures_a_bounded_number_of_pairs_and_the_next_ones_the_others(monkeypatch):
+    monkeypatch.setattr(property_watch, "MOST_COMPARED", 1)
+    checks = " ".join(
+        f'invariant "{name}": uav0 at least 10 m from {name}' for name in ("mid0", "uav1", "south0")
+    )
+    run = sent(checks, ROUND)
+    measured = [frozenset(name for name, (_, at) in times(run).items() if at == 0.0)]
+    for now in (1.0, 2.0, 3.0):
+        flown(run, now, (36.99, -8.645), NORTH)
+        measured.append(frozenset(name for name, (_, at) in times(run).items() if at == now))
+    assert {len(each) for each in measured} == {1}
+    assert len(frozenset().union(*measured)) == len(times(run)) >= 2
+    assert not standing(run, "south0").holds  # its way leads through it
+
+
+def times(run):
+    return {str(atom): known for atom, known in run.state.watched.compared.items()}
+
+
+def test_a_formula_with_too_many_pairs_is_not_watched():
+    found = mission(f"{TWO}{STILL} check {{ {APART} }}").properties
+    (formula,) = (each for each in found if each.name == "apart")
+    (ground,) = about_ways(*found)
+    assert str(ground.formula) == "uav0 at least 50 m from uav1"
+    with pytest.raises(TooManyPartsError):
+        grounded(formula.formula, 2)
