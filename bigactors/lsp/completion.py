@@ -41,6 +41,8 @@ NAMES_BEHIND: Final[Mapping[str, tuple[str, ...]]] = {
     "present": _ENTITIES,
     "known": _ENTITIES,
     "actually": _ENTITIES,
+    "possibly": _ENTITIES,
+    "surely": _ENTITIES,
     "in": _ENTITIES,
     "to": ("agent",),
     "ended": ("agent",),

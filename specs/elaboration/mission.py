@@ -11,7 +11,7 @@ from typing import Final
 from physical import open_file
 from semantics.environment import Clause, Placing, Says
 from semantics.live_policy import LivePolicy
-from semantics.properties.property import Property, watched
+from semantics.properties.property import Property, asks_of_regions, watched
 from semantics.state.brief import cut
 from semantics.state.configuration import Configuration
 from semantics.state.initial import initial
@@ -159,6 +159,10 @@ def elaborate(
         check_forest(mission, begin(setting), names)
     _stop(names.findings)
     warn_of_overflights(setting, partial(begin, setting), properties, names.findings)
+    if asks_of_regions(properties):
+        from semantics.regions.possible_motions import region_facts  # noqa: PLC0415 - few missions ask for regions
+
+        setting = setting.with_(regions=region_facts(begin(setting)))
     called = mission.name.text if mission.name is not None else Path(source.name).stem
     return ElaboratedMission(
         called,

@@ -140,7 +140,7 @@ def test_two_flights_of_one_vehicle_are_flown_in_one_hull():
 
 
 def test_an_atom_needs_the_facts_of_its_mission():
-    mission = read_mission(f"{WORLD}\nBigActor a hosted_at uav0 with_behavior {{ skip }}\n{NOTHING}")
+    mission = read_mission(f"{WORLD}\nBigActor a hosted_at uav0 with_behavior {{ skip }}")
     with pytest.raises(ValueError, match="begin with watching"):
         holds(PossiblyIn("uav0", "prison0"), mission.initial)
 
