@@ -123,6 +123,7 @@ def resumed(plan: Plan, state: LiveState, now: float) -> LiveState:
 def started(plan: Plan) -> LiveState:
     """Return the state in which a run of a mission begins."""
     physical = plan.first.structure.physical
-    placed = {name: physical.placement(name) for name in sorted(plan.vehicles)}
+    ours = [name for name, owner in plan.vehicles.items() if owner != plan.peers]
+    placed = {name: physical.placement(name) for name in sorted(ours)}
     begins = {name: centroid(at.geometry) for name, at in placed.items() if isinstance(at, Placed)}
     return LiveState(plan.first, commanded=Commanded(begins=begins))

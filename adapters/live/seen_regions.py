@@ -136,7 +136,11 @@ class SeenWorld:
         physical = self.c.structure.physical
         to = physical.going_to(entity)
         target = physical.position(to) if to else None
-        if self.plan.vehicles.get(entity) == self.plan.peers and target is not None:
+        if (
+            target is not None
+            and entity not in self.commanded.flights
+            and not self.overrides.is_overridden(entity)
+        ):
             sources = tuple(sorted({at, target.geometry}))
             yield RegionPart(sources, True, margin, band, RegionKind.LEG, ("", to))
 
@@ -151,7 +155,7 @@ def _foot(way: FlownWay, at: Geometry, strays: float) -> Geometry:
 
 def way_of(entity: Name, commanded: Commanded, overrides: Overrides) -> FlownWay | None:
     """Return the way of a vehicle that the mission commands; None if it was sent nowhere, or obeys others."""
-    if entity in overrides.taken or any(True for _ in overrides.of(entity)):
+    if overrides.is_overridden(entity):
         return None
     given = commanded.flights.get(entity)
     if given is None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from adapters.live.assumptions import STRAYED
-from adapters.live.fallbacks import breaks
+from adapters.live.fallbacks import answers_for, breaks
 from adapters.live.flown_ways import ACCEPTANCE, FlownWay
 from adapters.live.fresh_placements import Sighting
 from adapters.live.seen_regions import margin_of, way_of
@@ -27,7 +27,8 @@ def watch_ways(turning: Turning) -> None:
 
 
 def _is_overridden(turning: Turning, entity: Name) -> bool:
-    return entity in turning.overrides.taken or any(True for _ in turning.overrides.of(entity))
+    """Return whether others command a vehicle: a pilot, an operator, another station, or the mission's fallback."""
+    return not answers_for(turning, entity) or turning.overrides.is_overridden(entity)
 
 
 def _watch(turning: Turning, entity: Name, sighting: Sighting) -> None:

@@ -3,7 +3,7 @@
 from bigactors.arguments import parse_arguments
 from bigactors.cli import main
 from bigactors.commands.run.flight import prepare
-from bigactors.commands.run.way_checks import check_ways, unwatched
+from bigactors.commands.run.way_checks import check_ways, unseen, unwatched
 
 MISSION = """
 mission ways
@@ -35,7 +35,7 @@ def test_invariants_about_ways_are_watched_and_a_verdict_that_rests_on_strays_pe
 ):
     flight = prepared(tmp_path, 'invariant "no fly": not possibly uav0 in prison0')
     assert [each.name for each in flight.plan.invariants] == ["no fly"]
-    check_ways(flight.plan, flight.mission, flight.plugins)
+    check_ways(flight.plan, flight.mission, flight.plugins, {"uav0"})
     assert "warning" not in capsys.readouterr().err
 
 
@@ -43,4 +43,12 @@ def test_properties_of_runs_about_ways_are_named_since_nothing_watches_them(tmp_
     flight = prepared(tmp_path, 'ltl "never": [] not possibly uav0 in prison0', verified=False)
     assert [*unwatched(flight.plan, flight.mission)] == [
         "'never' is not watched: of properties about ways, a run watches invariants only"
+    ]
+
+
+def test_an_entity_that_moves_and_that_nothing_has_reported_is_named(tmp_path):
+    flight = prepared(tmp_path, 'invariant "no fly": not possibly uav0 in prison0')
+    assert [*unseen(flight.plan, {"uav0"})] == []
+    assert [*unseen(flight.plan, ())] == [
+        "nothing has reported uav0: until it is seen it may be anywhere, and 'no fly' counts so"
     ]

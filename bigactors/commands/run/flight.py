@@ -333,7 +333,7 @@ async def fly(
             check_idle(live, takes_over=takes_over)
             await get_to_know(flight.plugins, obeying(flight.plan, live.state))
             check_places(flight.mission, flight.plugins)
-            check_ways(flight.plan, flight.mission, flight.plugins)
+            check_ways(flight.plan, flight.mission, flight.plugins, live.state.sightings.newest)
         flight.start.begun = True
         settle()
         say(f"{flight.mission.name} begins; bigactors status, say, hold and return reach it at {path}")

@@ -106,7 +106,7 @@ async def _check(live: LiveRun, before: StartChecks) -> None:
     check_idle(live, takes_over=before.takes_over)
     await get_to_know(before.plugins, obeying(live.plan, live.state))
     check_places(before.mission, before.plugins)
-    check_ways(live.plan, before.mission, before.plugins)
+    check_ways(live.plan, before.mission, before.plugins, live.state.sightings.newest)
 
 
 # --- the list -----------------------------------------------------------------------------------------

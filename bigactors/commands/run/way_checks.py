@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 
 from adapters.live.ground_formulas import MOST_PARTS, about_ways
 from adapters.live.plan import Plan
@@ -21,7 +21,9 @@ from semantics.properties.propositions import (
     Waiting,
     atoms_of,
 )
+from semantics.properties.region_atoms import RegionAtom, operands
 from semantics.state.configuration import Configuration
+from semantics.state.signature import Name
 from semantics.state.station_partition import is_parted
 from specs.elaboration import ElaboratedMission
 
@@ -39,7 +41,9 @@ def _reads_elsewhere(asked: Property, first: Configuration) -> bool:
     return is_parted(first) and any(isinstance(atom, OF_AGENTS) for atom in atoms_of(asked.formula))
 
 
-def check_ways(plan: Plan, mission: ElaboratedMission, plugins: tuple[Plugin, ...]) -> None:
+def check_ways(
+    plan: Plan, mission: ElaboratedMission, plugins: tuple[Plugin, ...], seen: Collection[Name]
+) -> None:
     """Refuse vehicles whose circles are wider than they may stray, and name all that is not watched; raises Mistake."""
     for vehicle, most in mission.setting.strays.items():
         for plugin in circling(plugins):
@@ -48,7 +52,7 @@ def check_ways(plan: Plan, mission: ElaboratedMission, plugins: tuple[Plugin, ..
                 message = f"{vehicle} strays at most {most:g} m, and flies circles of {across:g} m across"
                 hint = "nothing has been commanded; give the mission a wider bound, or the vehicle a smaller circle"
                 raise Mistake(message, hint, mission.source.name)
-    for line in unwatched(plan, mission):
+    for line in (*unwatched(plan, mission), *unseen(plan, seen)):
         tell(f"warning: {line}")
 
 
@@ -68,3 +72,12 @@ def unwatched(plan: Plan, mission: ElaboratedMission) -> Iterator[str]:
             yield f"'{each.name}' is not watched: of properties about ways, a run watches invariants only"
     if is_parted(plan.first) and plan.invariants:
         yield "the ways of other stations' vehicles count as straight lines to their destinations"
+
+
+def unseen(plan: Plan, seen: Collection[Name]) -> Iterator[str]:
+    """Yield the entities of watched invariants that move and that nothing has reported: they may be anywhere."""
+    for each in plan.invariants:
+        atoms = (atom for atom in atoms_of(each.formula) if isinstance(atom, RegionAtom))
+        names = {name for atom in atoms for name in operands(atom)}
+        for name in sorted(names - plan.fixed - frozenset(seen)):
+            yield f"nothing has reported {name}: until it is seen it may be anywhere, and '{each.name}' counts so"

@@ -1,7 +1,7 @@
 """Invariants about ways while a mission runs: held against what is seen, to figures by pyproj."""
 
 import pytest
-from live_missions import TWO, Run, mission, seen
+from live_missions import TWO, Run, aged, mission, seen
 from pyproj import Geod
 
 from adapters.live import property_watch
@@ -261,3 +261,28 @@ def test_a_formula_with_too_many_pairs_is_not_watched():
     assert str(ground.formula) == "uav0 at least 50 m from uav1"
     with pytest.raises(TooManyPartsError):
         grounded(formula.formula, 2)
+
+
+def test_a_vehicle_that_is_not_heard_any_more_may_be_anywhere():
+    run = watching(f"{APART}", more="live { on broken assumption: continue }")
+    run.turn(1.0, aged(seen("uav0", WEST, 1.0), 5.0), aged(seen("uav1", beside(NORTH, 0.0, 300.0), 1.0), 5.0))
+    run.turn(3.0, aged(seen("uav0", WEST, 3.0), 5.0), aged(seen("uav1", beside(NORTH, 0.0, 300.0), 3.0), 5.0))
+    assert standing(run).holds
+    run.turn(9.0, aged(seen("uav0", WEST, 9.0), 5.0))
+    assert standing(run).figure == "uav1 is not seen and may be anywhere; uav0 at least 50 m from uav1"
+    assert not standing(run).holds
+
+
+def test_another_ship_moves_on_at_the_speed_that_it_reported():
+    run = watching('invariant "clear": uav0 at least 100 m from boat0')
+    at = beside(WEST, 0.0, 300.5)
+    run.turn(1.0, seen("uav0", WEST, 1.0), boat_at(at, 1.0, 10.0))
+    assert standing(run, "clear").figure == "uav0 may come within 300 m of boat0; at least 100 m"
+    run.turn(16.0, seen("uav0", WEST, 16.0))
+    assert standing(run, "clear").figure == "uav0 may come within 150 m of boat0; at least 100 m"
+    run.turn(22.0, seen("uav0", WEST, 22.0))
+    assert not standing(run, "clear").holds
+
+
+def boat_at(at, time, speed):
+    return seen("boat0", at, time, "ais", "Vessel", (), velocity=Velocity(speed, 180.0))
