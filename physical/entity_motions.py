@@ -1,4 +1,4 @@
-"""What a mission's text, a configuration's placements and its flights say about the position of an entity.
+"""Facts about an entity's position: from a mission's text, a configuration's placements and its flights.
 
 `physical.mission_regions` computes regions from these plain data.
 """
@@ -13,7 +13,7 @@ from physical.place_nesting import Place
 
 @dataclass(frozen=True, slots=True)
 class EntityMotion:
-    """All that a mission's text says about the possible positions of one entity.
+    """The facts in a mission's text about the possible positions of one entity.
 
     Attributes:
         name: The entity.
@@ -23,9 +23,9 @@ class EntityMotion:
         targets: The places and carriers to which a control may send it; any that fits, where the text names none.
         via: The places by which a control may send it.
         carriers: The entities that may carry it: at first, by a clause or by a control.
-        containers: The places whose kinds may contain its kind.
+        containers: The places of kinds that may contain its kind.
         may_be_absent: Whether it may be absent from P: at first, or since it vanishes.
-        strays: The metres of `strays at most`; None if the mission does not say it.
+        strays: The metres of `strays at most`; None without this clause.
         circle: The diameter in metres of its circle, 0 if it hovers or this is unknown.
         drift: Its drift within a place, if it has one.
     """
@@ -44,7 +44,7 @@ class EntityMotion:
 
     @property
     def margin(self) -> float:
-        """The metres r by which its regions are grown: what the mission says, else its circle."""
+        """The metres r by which its regions are grown: those of `strays at most`, else its circle."""
         return self.circle if self.strays is None else self.strays
 
     @property
@@ -85,3 +85,8 @@ class FlightPlan:
     to: str
     via: tuple[str, ...] = ()
     start: str = ""
+
+    @property
+    def stops(self) -> tuple[str, ...]:
+        """All places to which it leads, in order."""
+        return (*self.via, self.to)

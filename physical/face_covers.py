@@ -47,7 +47,7 @@ def standing_for(drift: DriftWithin, middle: Geometry) -> int | None:
 
 
 def face_covers(drift: DriftWithin) -> tuple[tuple[FaceCover, ...], ...]:
-    """Return, for each face, what the entity covers in all of its cells.
+    """Return, for each face, the cover of the entity in each of its cells.
 
     Cells narrower than 10 cm are in no face.
     """
@@ -79,7 +79,7 @@ def _cover(drift: DriftWithin, cell: Cell, plane: MetricPlane) -> FaceCover:
 
 
 def _swept(cell: shapely.Polygon, offsets: Iterable[Offset]) -> shapely.Polygon:
-    """Return what a convex mover covers with its centroid in a cell: their Minkowski sum."""
+    """Return the points that a convex mover covers with its centroid in a cell: their Minkowski sum."""
     around = list(offsets)
     edges = [edge for line in (cell.exterior, *cell.interiors) for edge in pairwise(line.coords)]
     swept = [

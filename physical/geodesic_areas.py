@@ -16,7 +16,7 @@ import numpy as np
 import shapely
 
 from physical.frame import E7, EARTH_RADIUS, geod
-from physical.gnomonic import Disc, GnomonicFrame, RegionError, around, check_reach, frame_of
+from physical.gnomonic import Disc, GnomonicFrame, RegionError, around, check_reach, frame_of, stretch
 from physical.regions import FaceCover, RegionPart, Source
 from physical.shape import MEMO, Geometry, planar
 
@@ -29,7 +29,7 @@ MOST_CHORDS: Final = 4_000
 
 @dataclass(frozen=True, slots=True, eq=False)
 class GeodesicArea:
-    """A point, a line or a polygon whose edges are shortest lines.
+    """A point, a line or a polygon; its edges are shortest lines.
 
     Attributes:
         shape: Its vertices as longitudes and latitudes in degrees; longitudes may be a turn off.
@@ -54,15 +54,36 @@ def area_of(part: RegionPart) -> GeodesicArea:
     """Return the area of a part without its margin.
 
     Raises:
-        RegionError: If it is too large, or covers a pole.
+        RegionError: If it is too large.
     """
     return _hull(part.sources) if part.spanned else source_area(part.sources[0])
 
 
 @lru_cache(maxsize=MEMO)
 def disc_of(part: RegionPart) -> Disc:
-    """Return a disc around a part, with its margin."""
-    return area_of(part).disc.grown(part.margin)
+    """Return a disc around a part, with its margin.
+
+    Raises:
+        RegionError: If the part is too large, or covers a pole.
+    """
+    area = area_of(part)
+    if not part.is_exact:
+        _check_pole(area, part.margin)
+    return area.disc.grown(part.margin)
+
+
+def _check_pole(area: GeodesicArea, margin: float) -> None:
+    pole = Disc(math.copysign(90.0, area.disc.latitude), 0.0, 0.0)
+    if pole.least(area.disc) > margin:
+        return
+    frame = frame_of(area.disc)
+    spot = shapely.Point(frame.plane(np.array([[pole.longitude, pole.latitude]]))[0])
+    if shapely.distance(projected(area, frame), spot) <= margin * stretch(area.disc.radius) + 0.5:
+        raise RegionError(
+            "region-over-a-pole",
+            "a region covers a pole",
+            "fly around it by places (VIA): shortest lines near a pole cross it",
+        )
 
 
 @lru_cache(maxsize=MEMO)
@@ -103,8 +124,8 @@ def _cut_ring(corners: Any) -> Any:
 def _cut(here: Any, there: Any) -> Any:
     """Return the vertices of an edge but for its end, close enough for chords.
 
-    A line that is straight in latitude and longitude bends by the acceleration of its coordinates on the sphere, at
-    most sin φ · (cos φ Δλ² + 2 Δφ Δλ) radians over its whole length; an eighth of this is its sagitta.
+    A line that is straight in latitude and longitude bends on the sphere. The acceleration over its whole length is at
+    most sin φ · (cos φ Δλ² + 2 Δφ Δλ) radians. An eighth of this is its sagitta.
     """
     (east, north), (to_east, to_north) = np.radians(here), np.radians(there)
     across, along = abs(to_east - east), abs(to_north - north)
@@ -152,17 +173,4 @@ def _hull(sources: tuple[Source, ...]) -> GeodesicArea:
     check_reach(disc, "a region")
     frame = frame_of(disc)
     hull = shapely.MultiPoint(frame.plane(positions)).convex_hull
-    _check_pole(hull, frame, disc)
     return GeodesicArea(frame.unproject(hull), disc)
-
-
-def _check_pole(hull: shapely.Geometry, frame: GnomonicFrame, disc: Disc) -> None:
-    pole = math.copysign(90.0, disc.latitude)
-    if Disc(pole, 0.0, 0.0).least(disc) > 0.0:
-        return
-    if hull.distance(shapely.Point(frame.plane(np.array([[0.0, pole]]))[0])) <= 0.5:
-        raise RegionError(
-            "region-over-a-pole",
-            "a region covers a pole",
-            "fly around it by places (VIA): shortest lines near a pole cross it",
-        )

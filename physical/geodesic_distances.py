@@ -20,11 +20,15 @@ from physical.gnomonic import (
     Disc,
     GnomonicFrame,
     around,
+    beside,
     check_reach,
     frame_of,
     stretch,
 )
 from physical.shape import MEMO
+
+MOST_KNOWN: Final = 1 << 17
+"""The number of rough distances that are kept."""
 
 MOST_PAIRS: Final = 400_000
 """The largest number of vertices times edges that are compared at once."""
@@ -48,16 +52,22 @@ class GeodesicLine(NamedTuple):
 
 
 def shared_frame(a: Disc, b: Disc) -> tuple[GnomonicFrame, float]:
-    """Return a frame for two discs, and the metres that they reach from its centre.
+    """Return a frame for two discs, and a bound of the metres that they reach from its centre.
 
     Raises:
         RegionError: If they reach too far from their common middle.
     """
     both = around(a, b)
     check_reach(both, "a comparison of two regions")
-    frame = frame_of(both)
-    _, _, beside = geod().inv(frame.longitude, frame.latitude, both.longitude, both.latitude)
-    return frame, both.radius + beside
+    return frame_of(both), both.radius + beside(both)
+
+
+@lru_cache(maxsize=MOST_KNOWN)
+def rough_distance(a: GeodesicArea, b: GeodesicArea) -> tuple[float, float]:
+    """Return a lower and an upper bound of the distance between two areas, in metres; both are 0 if they meet."""
+    frame, reach = shared_frame(a.disc, b.disc)
+    apart = float(shapely.distance(projected(a, frame), projected(b, frame)))
+    return apart / stretch(reach), apart
 
 
 @lru_cache(maxsize=MEMO)

@@ -23,10 +23,10 @@ FINE: Final = 500_000.0
 """Metres from the middle within which figures are good to half a metre."""
 
 FARTHEST_REACH: Final = 1_000_000.0
-"""Metres from the middle within which figures are good to five metres; what reaches farther is refused."""
+"""Metres from the middle within which figures are good to five metres; larger regions are refused."""
 
 BENDING: Final = 0.2
-"""A bound in metres of the error of straightness at `FINE`, for a frame whose centre is beside the middle."""
+"""A bound in metres of the error of straightness at `FINE`, for a frame with its centre beside the middle."""
 
 COARSEST: Final = 0.5
 FINEST: Final = 0.125
@@ -34,6 +34,9 @@ FINEST: Final = 0.125
 
 METRES_PER_STEP: Final = 900_000.0
 """Metres of reach per degree of that step, so that a centre is near its middle in proportion."""
+
+METRES_PER_LATITUDE: Final = 111_700.0
+"""Metres per degree of latitude, or of longitude, at most."""
 
 SPHERE: Final = 6_371_000.0
 ELLIPTICITY: Final = 0.007
@@ -55,6 +58,11 @@ class Disc(NamedTuple):
         """Return the disc with a larger radius."""
         return Disc(self.latitude, self.longitude, self.radius + by)
 
+    def vector(self) -> tuple[float, float, float]:
+        """Return the centre on the unit sphere."""
+        north, east = math.radians(self.latitude), math.radians(self.longitude)
+        return (math.cos(north) * math.cos(east), math.cos(north) * math.sin(east), math.sin(north))
+
     def to_centre(self, other: Disc) -> float:
         """Return the metres between two centres, to the share `ELLIPTICITY`."""
         north, south = math.radians(self.latitude), math.radians(other.latitude)
@@ -72,15 +80,31 @@ class Disc(NamedTuple):
 
 
 def around(a: Disc, b: Disc) -> Disc:
-    """Return a disc around two discs."""
-    azimuth, _, apart = geod().inv(a.longitude, a.latitude, b.longitude, b.latitude)
+    """Return a disc around two discs; it is little larger than need be, and exactly so near the largest size."""
+    apart = a.to_centre(b) * (1 + ELLIPTICITY)
     if apart + b.radius <= a.radius:
         return a
     if apart + a.radius <= b.radius:
         return b
-    radius = (apart + a.radius + b.radius) / 2
-    longitude, latitude, _ = geod().fwd(a.longitude, a.latitude, azimuth, radius - a.radius)
+    if apart + a.radius + b.radius > 1.8 * FARTHEST_REACH:
+        return _closely_around(a, b)
+    share = (apart + b.radius - a.radius) / 2 / apart
+    middle = _on_the_sphere(a, b, share)
+    radius = max(each.to_centre(middle) * (1 + ELLIPTICITY) + each.radius for each in (a, b))
+    return Disc(middle.latitude, middle.longitude, radius)
+
+
+def _closely_around(a: Disc, b: Disc) -> Disc:
+    azimuth, _, apart = geod().inv(a.longitude, a.latitude, b.longitude, b.latitude)
+    radius = max((apart + a.radius + b.radius) / 2, a.radius, b.radius)
+    longitude, latitude, _ = geod().fwd(a.longitude, a.latitude, azimuth, max(0.0, radius - a.radius))
     return Disc(latitude, longitude, radius)
+
+
+def _on_the_sphere(a: Disc, b: Disc, share: float) -> Disc:
+    """Return the position at a share of a short chord between two centres, seen from the earth's centre."""
+    x, y, z = ((1 - share) * one + share * other for one, other in zip(a.vector(), b.vector(), strict=True))
+    return Disc(math.degrees(math.atan2(z, math.hypot(x, y))), math.degrees(math.atan2(y, x)), 0.0)
 
 
 def slack(reach: float) -> float:
@@ -112,7 +136,7 @@ class GnomonicFrame:
     proj: Any
 
     def project(self, shape: shapely.Geometry) -> shapely.Geometry:
-        """Return a shape whose coordinates are longitudes and latitudes in degrees."""
+        """Return the image of a shape in longitudes and latitudes (degrees)."""
         return shapely.transform(shape, self._forward)
 
     def unproject(self, shape: shapely.Geometry) -> shapely.Geometry:
@@ -134,12 +158,19 @@ class GnomonicFrame:
         return np.column_stack(self.proj(coordinates[:, 0], coordinates[:, 1], inverse=True))
 
 
+def _step(disc: Disc) -> float:
+    """Return the degrees between the centres of frames for discs of this size: a power of two."""
+    return min(COARSEST, FINEST * 2.0 ** max(0, math.frexp(disc.radius / METRES_PER_STEP / FINEST)[1] - 1))
+
+
+def beside(disc: Disc) -> float:
+    """Return a bound of the metres from a disc's centre to that of its frame."""
+    return 0.71 * METRES_PER_LATITUDE * _step(disc)
+
+
 def frame_of(disc: Disc) -> GnomonicFrame:
     """Return the frame for a disc; discs near one another share it."""
-    step = min(
-        COARSEST,
-        FINEST * 2.0 ** max(0, math.floor(math.log2(max(disc.radius / METRES_PER_STEP / FINEST, 1)))),
-    )
+    step = _step(disc)
     north = max(-90.0, min(90.0, round(disc.latitude / step) * step))
     east = (round(disc.longitude / step) * step + 180.0) % 360.0 - 180.0
     return _frame(north, east)

@@ -1,19 +1,30 @@
 """Reg(u) of a mission's entities, from their placements and flights.
 
-`Ways` takes what the mission's text says of each entity (`EntityMotion`) once. A region then depends on the placement
-of the entity's outermost carrier (or of itself) and on the flights that move it, and on nothing else.
+`Ways` takes the facts about each entity (`EntityMotion`) once. A region then depends on the placement
+of the entity's outermost carrier (or of itself) and on the flights that move it, and on nothing else. Where the past
+matters, everything counts that the mission allows:
+
+- A place that may be absent is not *steady*. While it is, a vehicle may fly to the centre of a larger one, so the
+  smallest steady place around it counts. A VIA leaves out an absent place, and is flown again when the place
+  returns, so such a way is one hull.
+- An entity that drifts within a place may be anywhere in its face from its first placement on.
+- Cargo that a drifting carrier has put down may be anywhere in the carrier's face, however little it strays.
+- A mover may be outside the hull of its targets by its margin, and by its own size.
+- A point counts in place of its place only where `run` surely sends the vehicle to it (`is_destination`).
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
+from functools import lru_cache
 from itertools import pairwise
 from typing import Final, TypeVar
 
 from physical.altitude import Band
 from physical.entity_motions import CarriedBy, EntityMotion, FlightPlan, Standpoint, Transit
-from physical.geodesic_areas import disc_of
+from physical.geodesic_areas import area_of, disc_of
+from physical.geodesic_distances import MOST_KNOWN, greatest_distance_of, nearest_line
 from physical.geometry_measures import waypoint
 from physical.gnomonic import RegionError
 from physical.place_nesting import Place
@@ -34,7 +45,7 @@ class Ways:
     def __init__(self, motions: Iterable[EntityMotion]) -> None:
         self._of: Final = PossibleGeometries(motions)
         self._resting: Final = RestingPlaces(self._of)
-        self._known: Final[dict[tuple[str, Place | Transit, frozenset[FlightPlan]], Region]] = {}
+        self._known: Final = lru_cache(maxsize=MOST_KNOWN)(self._region)
 
     def is_fixed(self, entity: str) -> bool:
         """Whether an entity has one geometry in all configurations in which it is present."""
@@ -78,12 +89,7 @@ class Ways:
         Raises:
             RegionError: If it reaches over 1,000 km from its middle, or covers a pole.
         """
-        if at is None:
-            return NOWHERE
-        key = (entity, at, flights)
-        if key not in self._known:
-            self._known[key] = _named(entity, lambda: self._region(entity, at, flights))
-        return self._known[key]
+        return NOWHERE if at is None else _named(entity, lambda: self._known(entity, at, flights))
 
     def _region(self, entity: str, at: Place | Transit, flights: frozenset[FlightPlan]) -> Region:
         is_area = self.is_area(entity)
@@ -94,7 +100,7 @@ class Ways:
         else:
             parts = self._at_rest(entity, at)
         for part in parts:
-            if part.spanned or part.margin > 0.0:
+            if not part.is_exact:
                 disc_of(part)  # refuse it here
         return Region(tuple(dict.fromkeys(parts)), is_area=is_area)
 
@@ -134,19 +140,43 @@ class Ways:
         begin, margin = self._begin(entity, at.origin)
         bearers = self._carriers_in(entity, at, flights).union(self._of.bringers(entity, at.origin.geometry))
         altitude = self._altitude(at.origin, sorted(bearers))
-        plans = [(*flight.via, flight.to) for flight in flights]
-        steps = sorted({name for plan in plans for name in plan})
-        if len(plans) == 1 and all(map(self._of.is_steady, steps)):
-            stops = [self._stop(entity, at.origin, name, name == plans[0][-1]) for name in plans[0]]
+        stops = self._stops(entity, at.origin, flights)
+        if stops is not None:
             points = [begin, *([stop] for stop in stops)]
-            names = [ORIGIN, *plans[0]]
-            legs = list(zip(pairwise(points), pairwise(names), strict=True))
+            legs = zip(pairwise(points), pairwise([ORIGIN, *flights[0].stops]), strict=True)
             return [_leg([*here, *there], margin, altitude, ends) for (here, there), ends in legs]
+        steps = sorted({name for flight in flights for name in flight.stops})
         wholes = [self._of.whole(name) for name in steps or [entity]]
         ends = [GroundPatch(whole.sources, True, whole.margin) for whole in wholes if whole is not None]
-        if any(len(plan) > 1 for plan in plans) or not steps:
+        if any(flight.via for flight in flights) or not steps:
             ends = [replace(each, margin=each.margin + self._of.radius(entity)) for each in ends]
         return [_leg([*begin, *ends], margin, altitude, (ORIGIN, *steps))]
+
+    def _stops(self, entity: str, origin: Place, flights: Sequence[FlightPlan]) -> list[GroundPatch] | None:
+        """Return where an entity flies to, stop by stop; None if several flights or renewals change the order."""
+        if len(flights) != 1 or not all(map(self._of.is_steady, flights[0].stops)):
+            return None
+        *via, to = flights[0].stops
+        return [
+            *(self._stop(entity, origin, name, False) for name in via),
+            self._stop(entity, origin, to, True),
+        ]
+
+    def length(self, entity: str, at: Transit, flights: frozenset[FlightPlan]) -> tuple[float, float] | None:
+        """Return the least and the greatest metres of an entity's way from stop to stop, without its margin.
+
+        It is None if a renewal may send the entity over a part of its way again.
+        """
+        stops = self._stops(entity, at.origin, tuple(flights))
+        if stops is None:
+            return None
+        points = [self._begin(entity, at.origin)[0], *([stop] for stop in stops)]
+        least = most = 0.0
+        for here, there in pairwise(points):
+            pairs = [(area_of(_ground(a)), area_of(_ground(b))) for a in here for b in there]
+            least += min(nearest_line(a, b).metres for a, b in pairs)
+            most += max(greatest_distance_of(a, b) for a, b in pairs)
+        return least, most
 
     def _begin(self, entity: str, origin: Place) -> tuple[list[GroundPatch], float]:
         """Return where a flight begins, and the metres r by which its legs are grown."""
@@ -164,7 +194,7 @@ class Ways:
         return frozenset(ends & carriers)
 
     def _stop(self, entity: str, origin: Place, place: str, is_last: bool) -> GroundPatch:
-        """Return where an entity flies to on its way: a point if `run` always sends it there, else the whole place."""
+        """Return where an entity flies to: a point if `run` always sends it there, else the whole place."""
         radius = 0.0 if is_last else self._of.radius(entity)
         whole = self._of.whole(place)
         assert whole is not None  # a steady place
@@ -183,6 +213,10 @@ def _leg(
     sources: set[Source] = {source for each in patches for source in each.sources}
     grown = margin + max(each.margin for each in patches)
     return RegionPart(tuple(sorted(sources, key=_order)), True, grown, altitude, RegionKind.LEG, ends)
+
+
+def _ground(patch: GroundPatch) -> RegionPart:
+    return RegionPart(patch.sources, patch.spanned)
 
 
 def _order(source: Source) -> tuple[object, ...]:

@@ -9,7 +9,14 @@ import shapely
 
 from physical.frame import geod, rounded
 from physical.geodesic_areas import area_of, disc_of, projected
-from physical.geodesic_distances import greatest_distance_of, lies_within, nearest_line, shared_frame
+from physical.geodesic_distances import (
+    MOST_KNOWN,
+    greatest_distance_of,
+    lies_within,
+    nearest_line,
+    rough_distance,
+    shared_frame,
+)
 from physical.gnomonic import FARTHEST_REACH, around, slack, stretch
 from physical.regions import FaceCover, RegionKind, RegionPart
 from physical.shape import MEMO, Geometry, contains, equal, intern, share_interior
@@ -32,10 +39,17 @@ def least_bound(a: RegionPart, b: RegionPart) -> float:
 
 def doubt(a: RegionPart, b: RegionPart) -> float:
     """Return the possible error in metres of figures about two parts."""
-    points = all(isinstance(source, Geometry) and source.is_point for source in (*a.sources, *b.sources))
-    if points and len(a.sources) == len(b.sources) == 1:
-        return 0.0
-    return slack(around(disc_of(a), disc_of(b)).radius)
+    return 0.0 if _are_points(a, b) else slack(around(disc_of(a), disc_of(b)).radius)
+
+
+def _are_points(a: RegionPart, b: RegionPart) -> bool:
+    """Whether both parts are points, perhaps with margins."""
+    return _is_point(a) and _is_point(b)
+
+
+def _is_point(part: RegionPart) -> bool:
+    first = part.sources[0]
+    return len(part.sources) == 1 and isinstance(first, Geometry) and first.is_point
 
 
 @lru_cache(maxsize=MEMO)
@@ -63,9 +77,12 @@ def meet(a: RegionPart, b: RegionPart) -> bool:
     known = _exactly_meet(a, b) if a.is_exact and b.is_exact else None
     if known is not None:
         return known
-    if least_bound(a, b) > GREATEST_SLACK:
-        return False
-    return line_between(a, b).metres == 0.0
+    return meet_or_touch(a, b)
+
+
+def meet_or_touch(a: RegionPart, b: RegionPart) -> bool:
+    """Whether two parts may have a point in common, on their borders or inside."""
+    return not are_apart(a, b, 1e-9)
 
 
 def _exactly_meet(a: RegionPart, b: RegionPart) -> bool | None:
@@ -109,9 +126,17 @@ def _exactly_in(a: RegionPart, place: Geometry) -> bool | None:
     return contains(place, inner) or (a.kind is RegionKind.REST and equal(place, inner))
 
 
+@lru_cache(maxsize=MOST_KNOWN)
 def are_apart(a: RegionPart, b: RegionPart, metres: float) -> bool:
     """Whether no point of a part is nearer than some metres to one of another."""
-    return metres <= 0.0 or least_bound(a, b) >= metres or line_between(a, b).metres >= metres
+    if metres <= 0.0 or least_bound(a, b) >= metres:
+        return True
+    if not _are_points(a, b):
+        low, high = rough_distance(area_of(a), area_of(b))
+        needed = metres + a.margin + b.margin + doubt(a, b)
+        if low >= needed or high < needed:
+            return low >= needed
+    return line_between(a, b).metres >= metres
 
 
 def are_near(a: RegionPart, b: RegionPart, metres: float) -> bool:
@@ -131,8 +156,3 @@ def is_covered(a: RegionPart, b: RegionPart, metres: float) -> bool:
         return False
     left = metres - a.margin + b.margin - doubt(a, b)
     return left >= 0.0 and lies_within(area_of(a), area_of(b), left)
-
-
-def meet_or_touch(a: RegionPart, b: RegionPart) -> bool:
-    """Whether two parts may have a point in common, on their borders or inside."""
-    return least_bound(a, b) <= GREATEST_SLACK and line_between(a, b).metres == 0.0

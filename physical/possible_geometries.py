@@ -19,7 +19,7 @@ from physical.part_relations import meet_or_touch
 from physical.place_nesting import Place
 from physical.placement import nearest_placement, outline, still, template
 from physical.regions import RegionKind, RegionPart
-from physical.shape import Geometry, contains, equal, share_interior
+from physical.shape import Geometry, contains, share_interior
 from physical.standing import Surroundings, standing
 
 SMALLEST: Final = 0.5
@@ -27,7 +27,7 @@ SMALLEST: Final = 0.5
 
 
 class PossibleGeometries:
-    """W(x) and what follows from it, for each entity x of a mission."""
+    """W(x) and its consequences, for each entity x of a mission."""
 
     def __init__(self, motions: Iterable[EntityMotion]) -> None:
         self.motions: Final = {motion.name: motion for motion in motions}
@@ -35,7 +35,7 @@ class PossibleGeometries:
         self._arrivals: Final[dict[tuple[str, str], frozenset[Geometry] | None]] = {}
 
     def motion(self, entity: str) -> EntityMotion:
-        """Return what the mission says about an entity; nothing about an unknown one."""
+        """Return the facts about an entity; none about an unknown one."""
         return self.motions.get(entity) or EntityMotion(entity)
 
     def whole(self, entity: str) -> RegionPart | None:
@@ -53,7 +53,7 @@ class PossibleGeometries:
         return RegionPart(tuple(sorted(sources)), spanned=True, margin=margin, kind=RegionKind.LEG)
 
     def kin(self, entity: str) -> frozenset[str]:
-        """Return the entities whose geometries W(x) has: its carriers', and those of its targets if it may be moved."""
+        """Return the entities of W(x): x, its carriers, and its targets if it may be moved."""
         found, waiting = {entity}, [entity]
         while waiting:
             motion = self.motion(waiting.pop())
@@ -118,40 +118,40 @@ class PossibleGeometries:
         target, forms = self.geometry(place), motion.forms
         if target.is_point:
             return frozenset()
-        holes = self._holes(entity, place)
+        holes = self._holes(entity, place, target)
         if holes is None:
             return self._central(entity, place)
         found = {nearest_placement(form.geometry, target, _levelled(holes, form.altitude)) for form in forms}
         return frozenset(each for each in found if each is not None)
 
-    def _inner(self, entity: str, place: str) -> Iterator[str]:
-        """Yield the possible containers of an entity that may reach into a steady place."""
-        target = RegionPart((self.geometry(place),))
+    def _inner(self, entity: str, place: str, target: Geometry) -> Iterator[str]:
+        """Yield the possible containers of an entity that may reach into a place at some geometry."""
+        whole = RegionPart((target,))
         for name in sorted(self.motion(entity).containers - {entity, place}):
-            whole = self.whole(name)
+            other = self.whole(name)
             if self.is_steady(name):
-                if share_interior(self.geometry(name), self.geometry(place)):
+                if share_interior(self.geometry(name), target):
                     yield name
-            elif whole is not None and _may_touch(whole, target):
+            elif other is not None and _may_touch(other, whole):
                 yield name
 
-    def _holes(self, entity: str, place: str) -> tuple[Place, ...] | None:
-        """Return the smaller containers in a steady place; None if they are not always the same."""
-        inner = tuple(self._inner(entity, place))
+    def _holes(self, entity: str, place: str, target: Geometry) -> tuple[Place, ...] | None:
+        """Return the smaller containers in a place at some geometry; None if they are not always the same."""
+        inner = tuple(self._inner(entity, place, target))
         if not all(self.is_steady(name) and len(set(self.motion(name).placements)) == 1 for name in inner):
             return None
-        order = (area(self.geometry(place)), place)
+        order = (area(target), place)
         return tuple(
             self.motion(name).placements[0] for name in inner if (area(self.geometry(name)), name) < order
         )
 
     def _central(self, entity: str, place: str) -> frozenset[Geometry] | None:
-        """Return the central placement in a place if it is free whatever moves there, else None."""
+        """Return the central placement in a place if it is always free, else None."""
         target = self.geometry(place)
         if any(not form.geometry.is_point for form in self.motion(entity).forms):
             return None
         middle = centroid(target)
-        if any(self.is_near(name, middle) for name in self._inner(entity, place)):
+        if any(self.is_near(name, middle) for name in self._inner(entity, place, target)):
             return None
         return frozenset({middle}) if contains(target, middle) else None
 
@@ -165,45 +165,60 @@ class PossibleGeometries:
         target = self.geometry(place)
         if place in self.motion(entity).carriers:
             return target if target.is_point else None
-        holes = None if target.is_point else self._holes(entity, place)
+        return self._centre(entity, shape, place, target)
+
+    def is_destination(self, entity: str, at: Geometry) -> bool:
+        """Whether `run` surely sends an entity to a point wherever P has it there: the centre of a target."""
+        motion, middle = self.motion(entity), centroid(at)
+        for place in sorted(motion.targets - motion.carriers):
+            for here in self.motion(place).placements:
+                if centroid(here.geometry) is middle:
+                    shapes = {form.geometry for form in motion.forms} or {middle}
+                    return all(self._centre(entity, shape, place, here.geometry) for shape in shapes)
+        return False
+
+    def _centre(self, entity: str, shape: Geometry, place: str, target: Geometry) -> Geometry | None:
+        """Return an entity's placement at the centre of a place at some geometry, if `run` sends it there."""
+        holes = None if target.is_point else self._holes(entity, place, target)
         if holes is None:
             return None
-        middle = nearest_placement(still(shape), target, [hole.geometry for hole in holes])
-        around = Surroundings(outside=tuple(sorted({hole.geometry for hole in holes})))
-        room = max(self.motion(entity).circle, SMALLEST)
+        outside = tuple(sorted({hole.geometry for hole in holes}))
+        middle = nearest_placement(still(shape), target, outside)
         if middle is None or centroid(middle) is not centroid(target):
             return None
-        return middle if standing(shape, target, around, room) is middle else None
+        room = max(self.motion(entity).circle, SMALLEST)
+        return middle if standing(shape, target, Surroundings(outside=outside), room) is middle else None
 
     def may_come_to(self, entity: str, at: Geometry) -> bool:
         """Whether a control may have put an entity at a placement; true in doubt."""
-        if self.bringers(entity, at):
-            return True
+        return self.may_fly_to(entity, at) or bool(self.bringers(entity, at))
+
+    def may_fly_to(self, entity: str, at: Geometry) -> bool:
+        """Whether P may have an entity at a placement after a flight; true in doubt."""
+        middle = centroid(at)
         for place in sorted(self.motion(entity).targets):
+            if self.is_steady(place) and not contains(self.geometry(place), middle):
+                continue  # most places
             arrivals = self.arrivals(entity, place)
             if arrivals is None:
-                if self.is_near(place, centroid(at)):
+                if self.is_near(place, middle):
                     return True
-            elif any(equal(at, each) for each in arrivals):
+            elif any(centroid(each) is middle for each in arrivals):
                 return True
         return False
 
     def bringers(self, entity: str, at: Geometry) -> tuple[str, ...]:
         """Return the entities that may have carried an entity to a placement and put it down there, sorted."""
-        return tuple(
-            name
-            for name in sorted(self.kin_of_carriers(entity) - {entity})
-            if self._may_stop_at(name, centroid(at))
-        )
+        carriers = sorted(self.kin_of_carriers(entity) - {entity})
+        return tuple(name for name in carriers if self._may_stop_at(name, centroid(at)))
 
     def _may_stop_at(self, carrier: str, middle: Geometry) -> bool:
-        """Whether a carrier's centroid in P may be at a point."""
+        """Whether P may have a carrier's centroid at a point while it does not fly; in flight it puts nothing down."""
         motion = self.motion(carrier)
-        if motion.targets:
-            return self.is_near(carrier, middle)
         if any(centroid(place.geometry) is middle for place in motion.placements):
             return True
-        return motion.drift is not None and standing_for(motion.drift, middle) is not None
+        drifts = motion.drift is not None and standing_for(motion.drift, middle) is not None
+        return drifts or self.may_fly_to(carrier, middle)
 
     def kin_of_carriers(self, entity: str) -> frozenset[str]:
         """Return an entity with all that may carry it, directly or not."""

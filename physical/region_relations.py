@@ -94,7 +94,7 @@ def _levels_in(a: RegionPart, outer: RegionPart) -> bool:
 def at_least(u: Located, v: Located, metres: float, up: float | None = None) -> bool:
     """Whether no point of u's region is nearer than `metres` to one of v's.
 
-    Parts whose bands are `up` metres apart or more are apart too (`metres` if `up` is None). It is true if one is
+    Parts are apart too if their bands are `up` metres apart or more (`metres` if `up` is None). It is true if one is
     absent, and false if both have one outermost carrier.
     """
     if not u.region or not v.region:
@@ -124,7 +124,7 @@ def within(u: Located, v: Located, metres: float) -> bool:
 def nearest(u: Located, v: Located, up: float | None = None) -> Nearest | None:
     """Return the nearest points of two regions; None if one is absent, or both have one outermost carrier.
 
-    If `up` is given, parts whose bands are `up` metres apart or more do not count; None if no others are left.
+    If `up` is given, parts with bands `up` metres apart or more do not count; None if no others are left.
     """
     if u.bearer == v.bearer:
         return None

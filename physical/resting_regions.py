@@ -31,7 +31,7 @@ LEAVING: Final = 0.5
 
 @dataclass(frozen=True, slots=True)
 class GroundPatch:
-    """A piece of ground: a source or a hull of several, grown by what its entities may stray."""
+    """A piece of ground: a source or a hull of several, grown by a margin."""
 
     sources: tuple[Source, ...]
     spanned: bool = False
@@ -47,7 +47,7 @@ class RestingPlaces:
         self._covers: Final[dict[str, tuple[tuple[FaceCover, ...], ...]]] = {}
 
     def face(self, entity: str, at: Geometry) -> tuple[FaceCover, ...]:
-        """Return what a drifting entity covers in all cells of the face of its placement; empty if it is in none."""
+        """Return the cover of a drifting entity in all cells of the face of its placement; empty if it is in none."""
         drift = self._of.motion(entity).drift
         index = None if drift is None else face_of(drift, at)
         return () if index is None else self._faces(entity)[index]
@@ -71,7 +71,7 @@ class RestingPlaces:
 
     def _own(self, entity: str, at: Place) -> Iterator[GroundPatch]:
         motion = self._of.motion(entity)
-        if motion.strays is not None or not motion.targets:
+        if self._is_exact(motion, at.geometry):
             yield GroundPatch((at.geometry,))
         else:
             yield from self._flown_to(motion, at.geometry, (at.altitude,))
@@ -82,11 +82,16 @@ class RestingPlaces:
         face = None if motion.drift is None else standing_for(motion.drift, middle)
         for cover in () if face is None else self._faces(carrier)[face]:
             yield GroundPatch((cover,), margin=radius, kind=RegionKind.FACE)
-        if motion.strays is not None or not motion.targets:
+        if self._is_exact(motion, middle):
             yield GroundPatch((at,))
             return
         for each in self._flown_to(motion, middle, self._of.bands(carrier)):
             yield replace(each, margin=each.margin + radius)
+
+    def _is_exact(self, motion: EntityMotion, at: Geometry) -> bool:
+        """Whether an entity is at its placement, up to its margin: `run` sent it there, or no flight could have."""
+        said = motion.strays is not None and self._of.is_destination(motion.name, at)
+        return said or not self._of.may_fly_to(motion.name, at)
 
     def _flown_to(
         self, motion: EntityMotion, at: Geometry, bands: Iterable[Band | None]

@@ -602,6 +602,13 @@ class Code(Enum):
         the case. `=spill` compares; another name takes any value.""",
     )
 
+    ONE_POINT = (
+        "LS711",
+        "two vehicles that may be sent to one point",
+        """In a mission with properties about ways, two vehicles may be sent to one place, and so to one point. Neither
+        their altitudes nor a property part them: `uav0 at least 50 m from uav1`.""",
+    )
+
     # --- LS8: timing
     BAD_DURATION = (
         "LS801",

@@ -71,7 +71,12 @@ def watched(properties: Iterable[Property]) -> frozenset[VariableOf]:
 
 def asks_of_regions(properties: Iterable[Property]) -> bool:
     """Whether some property is about the regions of entities."""
-    return any(isinstance(part, RegionAtom) for part in _parts(properties))
+    return next(region_atoms(properties), None) is not None
+
+
+def region_atoms(properties: Iterable[Property]) -> Iterator[RegionAtom]:
+    """Yield the atoms about regions in properties, as written: those of quantifiers may have variables."""
+    return (part for part in _parts(properties) if isinstance(part, RegionAtom))
 
 
 def _parts(properties: Iterable[Property]) -> Iterator[object]:

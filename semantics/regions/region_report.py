@@ -63,8 +63,10 @@ def _figure(atom: RegionAtom, c: Configuration) -> str:
             return f"{one} may be farther than {_length(distance)} from {other}"
         case ApartFrom():
             found = _nearest(atom, c)
+            if found is None and one == other:
+                return f"{one} is compared with itself, which `x != y -> ...` leaves out"
             if found is None:
-                return f"{one} and {other} are at one place"
+                return f"{one} and {other} are at one place, aboard one carrier"
             meets = found.metres < 1 and not found.gap
             near = (
                 f"{one} may meet {other}"

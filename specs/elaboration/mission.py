@@ -29,6 +29,7 @@ from specs.elaboration.environment import appearing_channels, elaborate_environm
 from specs.elaboration.independent_diagnostics import independent
 from specs.elaboration.initial_actors import first_actors
 from specs.elaboration.live import elaborate_live
+from specs.elaboration.meeting_points import warn_of_meeting_points
 from specs.elaboration.mission_mistakes import Findings
 from specs.elaboration.mobility import check_nesting, elaborate_mobility, fixed_entities, warn_of_outliers
 from specs.elaboration.names import Names
@@ -162,7 +163,9 @@ def elaborate(
     if asks_of_regions(properties):
         from semantics.regions.possible_motions import region_facts  # noqa: PLC0415 - few missions ask for regions
 
-        setting = setting.with_(regions=region_facts(begin(setting)))
+        facts = region_facts(begin(setting))
+        setting = setting.with_(regions=facts)
+        warn_of_meeting_points(setting, facts, properties, names)
     called = mission.name.text if mission.name is not None else Path(source.name).stem
     return ElaboratedMission(
         called,

@@ -96,11 +96,15 @@ def test_the_border_of_a_face_has_its_holes():
     assert found.border.shape.geom_type == "MultiLineString"
 
 
-def test_a_hull_over_a_pole_or_too_large_is_refused():
-    with pytest.raises(RegionError, match="a region covers a pole"):
-        area_of(hull(point(89.0, 10.0), point(89.0, -170.0)))
-    with pytest.raises(RegionError, match="a region covers a pole"):
-        area_of(hull(point(-89.0, 10.0), point(-89.0, 130.0), point(-89.0, -110.0)))
-    area_of(hull(point(89.0, 10.0), point(89.0, 130.0)))  # beside it
+def test_a_region_over_a_pole_or_too_large_is_refused():
+    for part in (
+        hull(point(89.0, 10.0), point(89.0, -170.0)),
+        hull(point(-89.0, 10.0), point(-89.0, 130.0), point(-89.0, -110.0)),
+        hull(point(89.999, 10.0), margin=120.0),
+    ):
+        with pytest.raises(RegionError, match="a region covers a pole"):
+            disc_of(part)
+    disc_of(hull(point(89.0, 10.0), point(89.0, 130.0)))  # beside it
+    disc_of(hull(point(89.999, 10.0), margin=100.0))
     with pytest.raises(RegionError, match="from its middle"):
         area_of(hull(point(37.0, -8.0), point(37.0, 20.0)))

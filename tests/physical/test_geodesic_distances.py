@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from drawing_regions import geometry, hull, rings
 from oracles.random_places import WORLDS, place
-from oracles.sampled_geodesics import apart, away, extreme, feet, metres, on_ring, surrounded
+from oracles.sampled_geodesics import GEOD, apart, away, between, extreme, feet, metres, on_ring, surrounded
 from scale import seeds
 
 from physical import RegionError, box, circle, point
@@ -99,11 +99,29 @@ def test_the_side_of_an_area_between_two_corners_is_farther_than_both():
     """A parallel of the shore: both ends of a line 50 km off are nearer than its middle, by the earth's curvature."""
     shore = area_of(hull(point(0.0, -1.0), point(0.0, 1.0)))
     north = 50_000 / 110_574
+    west, east = [-0.45, north], [0.45, north]
     off = area_of(hull(point(north, -0.45), point(north, 0.45)))
-    ends = feet([-0.45, north], rings(shore)[0])[0]
-    middle = feet([0.0, north + 1e-9], rings(shore)[0])[0]
-    assert not lies_within(off, shore, ends - 0.01)
-    assert lies_within(off, shore, middle + 2.0)
+    ends, middle = feet([west, between(west, east, 0.5)[0]], rings(shore)[0])
+    assert middle > ends + 1.4
+    assert not lies_within(off, shore, ends + 0.7)
+    assert lies_within(off, shore, middle + 0.2)
+
+
+@pytest.mark.parametrize("first", [True, False])
+def test_a_frame_that_shows_the_wrong_points_nearest_does_not_decide(first):
+    """Far from its centre, a frame shows 99.75 km longer than 100 km at its centre."""
+    west, east = [-8.0, 45.0], [8.0, 45.0]
+    spots = []
+    for share, off in ((0.5, 100_000), (0.95, 99_750)):
+        at = between(west, east, share)[0]
+        ahead = GEOD.inv(*at, *east)[0]
+        spots.append(GEOD.fwd(*at, ahead - 90, off)[:2])
+    line, other = (
+        area_of(hull(*(point(north, east) for east, north in each))) for each in ((west, east), spots)
+    )
+    found = nearest_line(line, other) if first else nearest_line(other, line)
+    assert found.metres == pytest.approx(99_750, abs=0.1)
+    assert metres(found.second if first else found.first, spots[1])[0] < 0.1
 
 
 def test_areas_that_meet_are_no_metre_apart_and_the_point_is_in_both():

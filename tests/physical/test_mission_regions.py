@@ -15,6 +15,7 @@ from physical import (
     box,
     centroid,
     circle,
+    distance,
     drift_faces,
     nearest_placement,
     point,
@@ -143,6 +144,15 @@ def test_a_target_that_moves_counts_with_all_its_geometries():
     assert [(sources(part), part.spanned) for part in parts] == [({WEST}, False), ({one, other}, True)]
 
 
+def test_a_point_that_run_may_not_take_counts_as_its_place_even_if_it_strays_little():
+    """Off the centre, `run` keeps its circle clear of borders, and P only the point."""
+    hole = fixed("hole", circle((37.025, -8.975), 300))
+    craft = uav(strays=30.0, containers=NAMES | {"hole"})
+    at = nearest_placement(HOME, WEST, [hole.placements[0].geometry])
+    [part] = ways(craft, hole).region("uav", Place(at)).parts
+    assert (part.sources, part.margin) == ((WEST,), 30.0)
+
+
 # --- in transit -----------------------------------------------------------------------------------
 
 
@@ -200,6 +210,16 @@ def test_said_to_stray_little_it_flies_from_point_to_point():
     assert {leg.margin for leg in legs} == {30.0}
 
 
+def test_the_length_of_a_way_is_that_of_its_legs():
+    near, far = ways(uav()).length("uav", *flight())
+    assert near == pytest.approx(distance(HOME, EAST), abs=0.1)
+    assert far == pytest.approx(distance(HOME, point(37.0, -8.55)), abs=1)
+    exact = ways(uav(strays=30.0)).length("uav", *flight(via=("south",)))
+    legs = distance(HOME, centroid(SOUTH)) + distance(centroid(SOUTH), centroid(EAST))
+    assert exact == (pytest.approx(legs, abs=0.1), pytest.approx(legs, abs=0.1))
+    assert ways(uav(), fixed("east", EAST, may_be_absent=True)).length("uav", *flight()) is None
+
+
 def test_a_destination_counts_whole_where_the_point_may_change():
     """What moves in it, and a circle without room at its centre, both move the point."""
     spill = EntityMotion("spill", (Place(circle((37.02, -8.58), 300)), Place(circle((36.0, -8.0), 300))))
@@ -216,8 +236,10 @@ def test_a_destination_counts_whole_where_the_point_may_change():
 
 def test_the_hull_of_a_target_that_may_be_moved_is_grown_by_what_that_strays():
     ship = EntityMotion("ship", (Place(SOUTH),), targets=frozenset({"west"}), strays=50.0, containers=NAMES)
-    [leg] = ways(uav(targets=frozenset({"ship"}), strays=30.0), ship).region("uav", *flight("ship")).parts
-    assert sources(leg) == {HOME, SOUTH, WEST}
+    off = point(36.9, -8.3)
+    craft = uav(off, targets=frozenset({"ship"}), carriers=frozenset({"ship"}), strays=30.0)
+    [leg] = ways(craft, ship).region("uav", *flight("ship", origin=off)).parts
+    assert sources(leg) == {off, SOUTH, WEST}
     assert leg.margin == pytest.approx(80.0 + 3_570, abs=50)  # half the diagonal of the ship
 
 
@@ -289,6 +311,14 @@ def test_put_down_by_a_carrier_that_drifts_it_is_anywhere_in_the_face():
     craft = uav(strays=30.0, carriers=frozenset({"barge"}), targets=NAMES)
     parts = ways(craft, barge).region("uav", Place(face.representative)).parts
     assert [part.kind for part in parts] == [RegionKind.REST, RegionKind.FACE]
+
+
+def test_where_a_carrier_may_have_put_it_down_it_is_not_certain():
+    """The mission puts both at one point; the ship may have put the vehicle down there, somewhere in its circle."""
+    ship = EntityMotion("ship", (Place(HOME),), targets=frozenset({"south"}), circle=40.0)
+    assert ways(uav(), ship).region("uav", Place(HOME)).certain
+    [part] = ways(uav(carriers=frozenset({"ship"})), ship).region("uav", Place(HOME)).parts
+    assert (part.sources, part.margin, part.kind) == ((HOME,), 40.0, RegionKind.REST)
 
 
 # --- faces ----------------------------------------------------------------------------------------

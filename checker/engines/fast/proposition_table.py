@@ -47,6 +47,8 @@ from semantics.state.signature import Name
 
 Bools = NDArray[np.bool_]
 Numbers = NDArray[np.int64]
+Table = NDArray[Any]
+"""The true atoms of each profile of a subject, one row for each; of regions, their numbers."""
 
 Subject = tuple[Name, ...]
 """The names of an atom; the atoms of one subject share their reads."""
@@ -144,7 +146,7 @@ class Profiles:
             self.anchors[anchor] = [self.ranks[atom] for atom in each]
         return self.anchors[anchor]
 
-    def table(self, one: Subject) -> Bools | Numbers:
+    def table(self, one: Subject) -> Table:
         """Return the true atoms of each profile of a subject: one row for each profile; of regions, their numbers."""
         if is_of_region(one):
             return np.array([self.regions.number(each) for each in self.numbers[one]], np.int64)
@@ -273,13 +275,13 @@ class _Block:
 
     def _said(self, formula: Proposition, subjects: Subjects, there: Numbers) -> Bools:
         """Return the truth of a proposition for combined profile numbers of its subjects."""
-        tables, rest = dict[Subject, Bools | Numbers](), there
+        tables, rest = dict[Subject, Table](), there
         for one in reversed(subjects):
             rest, code = np.divmod(rest, len(self.tables[one]))
             tables[one] = self.tables[one][code]
         return self._of(formula, tables, len(there))
 
-    def _of(self, formula: Proposition, tables: dict[Subject, Bools | Numbers], size: int) -> Bools:
+    def _of(self, formula: Proposition, tables: dict[Subject, Table], size: int) -> Bools:
         match formula:
             case Always(value):
                 return np.full(size, value)
@@ -293,9 +295,10 @@ class _Block:
         if isinstance(formula, RegionAtom):
             one, *others = (tables[each] for each in subjects_of_atom(formula))
             return self.profiles.regions.relate(formula, one, others[0] if others else one)
-        return tables[subject(formula)][:, self.profiles.ranks[formula]]
+        true: Bools = tables[subject(formula)][:, self.profiles.ranks[formula]]
+        return true
 
-    def _worth_asking(self, parts: Instances, tables: dict[Subject, Bools]) -> Iterator[Proposition]:
+    def _worth_asking(self, parts: Instances, tables: dict[Subject, Table]) -> Iterator[Proposition]:
         """Yield the instances with an anchor that is true in some profile; without anchors, yield all."""
         anchor = parts.anchor
         if anchor is None:

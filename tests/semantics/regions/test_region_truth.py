@@ -145,6 +145,16 @@ def test_an_atom_needs_the_facts_of_its_mission():
         holds(PossiblyIn("uav0", "prison0"), mission.initial)
 
 
+def test_a_report_says_why_two_names_are_never_apart():
+    (c,) = runs("skip")
+    assert region_lines(ApartFrom("uav0", "uav0", 5.0), c)[0].startswith("uav0 is compared with itself")
+    (line,) = region_lines(ApartFrom("uav2", "ship0", 5.0), c)
+    assert line == (
+        "uav2 and ship0 are at one place, aboard one carrier: "
+        "uav2 aboard ship0, ship0 at (37.20000, -8.60000), ship0 at (37.20000, -8.60000)"
+    )
+
+
 def test_a_report_says_the_figure_the_whereabouts_and_the_points():
     *_, flying, there = runs("control(MOVE_HOST_TO east0)", labels=TO_EAST)
     apart, crosses = ApartFrom("uav0", "uav1", 500.0, 90.0), PossiblyIn("uav0", "prison0")
