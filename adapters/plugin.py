@@ -581,6 +581,25 @@ class Preflight(Protocol):
         ...
 
 
+@runtime_checkable
+class Circling(Protocol):
+    """A plugin that knows the circles of its vehicles."""
+
+    def owns(self, entity: str) -> bool:
+        """Return whether the vehicle is the plugin's."""
+        ...
+
+    def circle(self, entity: str) -> float:
+        """Return the diameter in metres of the circle that a vehicle flies to stay; 0 if it hovers, or if unknown."""
+        ...
+
+
+def circling(plugins: Iterable[Plugin]) -> tuple[Circling, ...]:
+    """Return the plugins that know the circles of their vehicles; a wrapper's `plugin` counts in its place."""
+    own = (getattr(plugin, "plugin", plugin) for plugin in plugins)
+    return tuple(plugin for plugin in own if isinstance(plugin, Circling))
+
+
 def preflights(plugins: Iterable[Plugin]) -> tuple[Preflight, ...]:
     """Return the plugins that have checks before take-off; a wrapper's `plugin` counts in its place."""
     own = (getattr(plugin, "plugin", plugin) for plugin in plugins)

@@ -51,12 +51,14 @@ class Terminal:
         resting: Returns the verdicts that depend on a finding's assumption.
         vehicles: The vehicles of the run.
         broken: Whether an assumption broke, or the recording or a plugin failed.
+        property_broken: Whether an invariant about ways was false of what was seen.
         state: The state after the last turn.
     """
 
     resting: Resting
     vehicles: Sequence[str] = ()
     broken: bool = field(default=False)
+    property_broken: bool = field(default=False)
     began: float | None = None
     state: LiveState | None = None
     _said: dict[str, Status] = field(default_factory=dict)
@@ -67,6 +69,7 @@ class Terminal:
     def goes_on(self, broken: Sequence[Finding], taken: Mapping[str, str]) -> None:
         """Print the breaches of the resumed run, and the vehicles that are taken over."""
         self.broken = any(map(_breaks, broken))
+        self.property_broken = any(map(_breaks_property, broken))
         told = tuple(dict.fromkeys((finding.kind, finding.message, finding.fallback) for finding in broken))
         for kind, message, fallback in told[:MOST_BREACHES]:
             back = f"; {DONE[fallback]}, as the mission says" if fallback in DONE else ""
@@ -102,6 +105,7 @@ class Terminal:
             say_text("".join(f"{line}\n" for line in lines), flush=True)
         for finding in turn.findings:
             self.broken |= _breaks(finding)
+            self.property_broken |= _breaks_property(finding)
             with _flying_on():
                 self._tell(finding)
         if self.vehicles:
@@ -148,6 +152,10 @@ class Terminal:
 def _breaks(finding: Finding) -> bool:
     """Return whether a finding voids the verification: a broken assumption, or a failure with a fallback."""
     return finding.kind == "broken assumption" or (finding.kind == "failed" and bool(finding.fallback))
+
+
+def _breaks_property(finding: Finding) -> bool:
+    return finding.kind == "broken property"
 
 
 @contextmanager

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 
 from adapters.live.command_planning import stopping
+from adapters.live.flown_ways import FlownWay
 from adapters.live.operator_findings import Finding, is_breach
 from adapters.live.overrides import StandingOrder
 from adapters.live.timing_monitor import Timers, begun, stepped
@@ -18,8 +20,10 @@ from bigactors.mission_lookup import digest_of
 from bigactors.mistakes import Mistake, unreadable
 from checker import ReplayError, Trace, replay
 from checker.traces import SCHEMA
+from physical import PhysicalError
 from semantics.live_policy import Fallback
 from semantics.state.configuration import Configuration, Transition
+from semantics.state.observation_serialization import geometry_of
 from semantics.state.setting import Control, Scheduler
 from semantics.state.station_partition import Parting, Passage, parcel_of, parted
 from specs import MissionError, Source
@@ -89,6 +93,7 @@ class Resumed:
         standing_orders: The operator's standing order for each vehicle that one took over.
         timers: The start times of all timed activities; None if the recording has no start time.
         until: The time of its last message.
+        ways: The last way of each vehicle that its mission commanded.
     """
 
     configuration: Configuration
@@ -102,6 +107,7 @@ class Resumed:
     standing_orders: Mapping[str, StandingOrder] = field(default_factory=dict)
     timers: Timers | None = None
     until: float = 0.0
+    ways: Mapping[str, FlownWay] = field(default_factory=dict)
 
 
 def resume(path: str, mission: ElaboratedMission) -> Resumed:
@@ -132,7 +138,25 @@ def resume(path: str, mission: ElaboratedMission) -> Resumed:
         {name: each for name, each in taken.items() if isinstance(each, StandingOrder)},
         None if mission.setting.timing is None else _timers(trace, kept),
         recording.until,
+        ways_of(recording.of("ways")),
     )
+
+
+def ways_of(messages: Iterable[Message]) -> dict[str, FlownWay]:
+    """Return the last way of each vehicle, of those that have one."""
+    ways: dict[str, FlownWay] = {}
+    for message in messages:
+        match message.data:
+            case {
+                "vehicle": str(vehicle),
+                "way": {"to": str(to), "points": [*points], "passed": int(passed)},
+            }:
+                with suppress(ValueError, PhysicalError):
+                    found = tuple(geometry_of({"ring": [each]}) for each in points)
+                    ways[vehicle] = FlownWay(found, to, max(1, min(passed, len(found))))
+            case {"vehicle": str(vehicle)}:
+                ways.pop(vehicle, None)
+    return {vehicle: way for vehicle, way in ways.items() if way.points}
 
 
 def _timers(trace: Trace, messages: Iterable[Message]) -> Timers | None:

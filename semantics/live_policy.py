@@ -1,4 +1,4 @@
-"""The responses of a mission's `live` section: to a broken assumption, and to a request that takes too long."""
+"""The responses of a mission's `live` section: to a broken assumption or property, and to a late request."""
 
 from dataclasses import dataclass
 from enum import Enum
@@ -37,7 +37,14 @@ class TimeLimit:
 
 @dataclass(frozen=True, slots=True)
 class LivePolicy:
-    """The `live` section of a mission; without one, vehicles hold when an assumption breaks."""
+    """The `live` section of a mission.
+
+    Attributes:
+        on_broken: The response to a broken assumption.
+        limits: The time limits of requests.
+        on_broken_property: The response to an invariant about ways that is false of what is seen.
+    """
 
     on_broken: Fallback = Fallback.HOLD
     limits: tuple[TimeLimit, ...] = ()
+    on_broken_property: Fallback = Fallback.CONTINUE

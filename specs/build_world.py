@@ -230,7 +230,7 @@ class BuildWorld(BuildTiming):
         return s.Live(nodes(c), span=cover(c))
 
     def on_broken(self, c: Children) -> s.OnBroken:
-        return s.OnBroken(option("fallback", c[4], FALLBACKS), span=cover(c))
+        return s.OnBroken(str(c[2]), option("fallback", c[4], FALLBACKS), span=cover(c))
 
     def time_limit(self, c: Children) -> s.TimeLimit:
         request = None if c[0] is None else str(c[0])

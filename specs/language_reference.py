@@ -197,6 +197,7 @@ environment {
     "Live runs": """\
 live {
   on broken assumption: return
+  on broken property: hold
   FLY a within 10 min: return
   anyone within 1 min: continue
 }

@@ -343,7 +343,7 @@ _PIECES: Final[dict[type[s.Node], Callable[..., list[str]]]] = {
     s.Arrives: lambda node: [f"{write(node.entity)} arrives"],
     s.Strays: lambda node: [f"{write(node.vehicle)} strays at most {write(node.distance)}"],
     **TIMING_PIECES,
-    s.OnBroken: lambda node: [f"on broken assumption: {node.fallback}"],
+    s.OnBroken: lambda node: [f"on broken {node.what}: {node.fallback}"],
     s.TimeLimit: lambda node: [_time_limit(node)],
     s.StandardProperty: lambda node: [node.name],
     s.Invariant: lambda node: [f"invariant {write(node.label)}:", write(node.formula)],

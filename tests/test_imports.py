@@ -94,6 +94,7 @@ LIBRARIES = {
         "physical/geodesic_areas.py",
         "physical/geodesic_distances.py",
         "physical/gnomonic.py",
+        "physical/line_foot.py",
         "physical/region_outlines.py",
         "physical/resting_regions.py",
     ),

@@ -13,7 +13,16 @@ from adapters.console.ticks import tick
 MOST: Final = 1_000
 
 WRONG: Final = frozenset(
-    {"broken assumption", "refused", "taken over", "lost link", "late", "blocked", "failed"}
+    {
+        "broken assumption",
+        "broken property",
+        "refused",
+        "taken over",
+        "lost link",
+        "late",
+        "blocked",
+        "failed",
+    }
 )
 """The kinds of findings that stand until an operator acknowledges them."""
 

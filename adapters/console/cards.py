@@ -254,15 +254,16 @@ def _of_link(link: Link, now: float) -> Iterator[Reason]:
 
 
 def _of_assumptions(facts: Facts, name: Name) -> Iterator[Reason]:
-    """Yield the newest unacknowledged broken assumption about a vehicle, and the number of the others."""
-    broken = [
-        alert["message"]
-        for alert in facts.alerts.values()
-        if alert["kind"] == "broken assumption" and alert["about"] == name and alert["acknowledged"] is None
-    ]
-    if broken:
-        more = f" (and {len(broken) - 1} more)" if len(broken) > 1 else ""
-        yield Reason(LOST, f"broken assumption: {broken[-1]}{more}", "broken")
+    """Yield the newest unacknowledged breaches about a vehicle, and the number of the others."""
+    for kind in ("broken assumption", "broken property"):
+        broken = [
+            alert["message"]
+            for alert in facts.alerts.values()
+            if alert["kind"] == kind and alert["about"] == name and alert["acknowledged"] is None
+        ]
+        if broken:
+            more = f" (and {len(broken) - 1} more)" if len(broken) > 1 else ""
+            yield Reason(LOST, f"{kind}: {broken[-1]}{more}", "broken")
 
 
 def _of_request(asked: Asked | None, now: float, *, idle: bool) -> Iterator[Reason]:

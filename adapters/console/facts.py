@@ -222,6 +222,8 @@ class Facts:
         authority: The controlling stations of vehicles.
         deadlines: The times until which agents wait.
         flights: The durations of flights, in the form of the cards, if the mission has times.
+        ways: The points to which vehicles are sent.
+        invariants: The section `invariants`.
         failed: Agents whose computation failed.
         steps: The section `steps`.
         ticks: The section `ticks`.
@@ -256,6 +258,8 @@ class Facts:
     authority: Mapping[Name, ControllingStations] = field(default_factory=dict)
     deadlines: Mapping[Name, float] = field(default_factory=dict)
     flights: Mapping[Name, Json] = field(default_factory=dict)
+    ways: Mapping[Name, Json] = field(default_factory=dict)
+    invariants: Section = field(default_factory=dict)
     failed: frozenset[Name] = frozenset()
     steps: Section = field(default_factory=dict)
     ticks: Section = field(default_factory=dict)

@@ -19,6 +19,7 @@ from adapters.console.preflight_checklist import take_preflight
 from adapters.console.replayed_steps import take_step
 from adapters.console.run_header import run_of
 from adapters.console.station_list import take_presence
+from adapters.console.watched_ways import take_invariant, take_way
 from adapters.live.request_timeouts import heads_of
 from adapters.recording.foxglove import OTHERS
 from adapters.recording.mcap_files import Message
@@ -29,6 +30,8 @@ TOPICS: Final[dict[str, Callable[[Draft, float, Any], None]]] = {
     "steps": take_step,
     "deadlines": take_deadline,
     "flights": take_flight,
+    "ways": take_way,
+    "invariants": take_invariant,
     "commands": take_command,
     "reports": take_report,
     "sayings": take_saying,

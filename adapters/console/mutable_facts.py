@@ -99,6 +99,8 @@ class Draft:
     authority: Table[ControllingStations]
     deadlines: Table[float]
     flights: Table[Json]
+    ways: Table[Json]
+    invariants: Table[Json]
     failed: frozenset[str]
     steps: Table[Json]
     ticks: Table[Json]

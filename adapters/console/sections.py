@@ -11,6 +11,7 @@ from adapters.console.console_view import Json, Section, View, keeping
 from adapters.console.entity_tracks import tracks
 from adapters.console.facts import Facts
 from adapters.console.station_list import stations
+from adapters.console.watched_ways import ways
 from adapters.console.whereabouts import entities, places
 from bigraphs import draw_text
 from semantics.state.configuration import Configuration
@@ -34,6 +35,8 @@ def view_of(facts: Facts, now: float, head: Facts, picture: Section, before: Vie
         "entities": entities(facts, now, shown),
         "vehicles": cards,
         "tracks": tracks(facts),
+        "ways": ways(facts),
+        "invariants": facts.invariants,
         "agents": agents(facts),
         "steps": facts.steps,
         "ticks": head.ticks,

@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 
+from adapters.live.flown_ways import FlownWay
 from adapters.plugin import Accepted, Arrived, Follow, GoTo, HandOver
-from physical import Geometry
+from physical import Geometry, waypoint
 from semantics.state.signature import Name
 
 
@@ -22,6 +23,8 @@ class GivenCommand:
         through: Whether the vehicle has reported the end of its path.
         refused: Whether it was refused.
         waypoint: The point around which the vehicle will stay, if it has reported one.
+        begin: The point from which the command leads.
+        passed: The number of VIA places that are certainly behind the vehicle.
     """
 
     command: GoTo | Follow | HandOver
@@ -31,6 +34,19 @@ class GivenCommand:
     through: bool = False
     refused: bool = False
     waypoint: Geometry | None = None
+    begin: Geometry | None = None
+    passed: int = 0
+
+    @property
+    def way(self) -> FlownWay | None:
+        """The points to which the command sends the vehicle; None for a hand-over."""
+        if isinstance(self.command, HandOver) or self.goal is None:
+            return None
+        path = (self.command.place,) if isinstance(self.command, GoTo) else self.command.path
+        begin = () if self.begin is None else (self.begin,)
+        points = (*begin, *map(waypoint, path[:-1]), self.waypoint or waypoint(path[-1]))
+        passed = len(path) - 1 if self.through else self.passed
+        return FlownWay(points, self.command.name, passed + len(begin))
 
     @property
     def goal(self) -> Geometry | None:
@@ -55,11 +71,22 @@ class Commanded:
         flights: The unconfirmed command of each vehicle in flight.
         hand_overs: The unconfirmed hand-over of each vehicle.
         count: The number of commands given so far, also fallbacks and operators' orders.
+        rests: For each vehicle that has arrived, the point around which it stays.
+        begins: For each vehicle that was never sent, the mission's point for it.
     """
 
     flights: Given = field(default_factory=dict)
     hand_overs: Given = field(default_factory=dict)
     count: int = 0
+    rests: Mapping[Name, FlownWay] = field(default_factory=dict)
+    begins: Mapping[Name, Geometry] = field(default_factory=dict)
+
+    @classmethod
+    def resumed(cls, count: int, ways: Mapping[Name, FlownWay]) -> Commanded:
+        """Return the commands of a resumed run but for flights: each vehicle has the first point of its last way."""
+        begins = {name: way.end for name, way in ways.items() if len(way.points) == 1 and not way.to}
+        rests = {name: FlownWay(way.points[:1], way.to) for name, way in ways.items() if name not in begins}
+        return cls(count=count, rests=rests, begins=begins)
 
     def __iter__(self) -> Iterator[GivenCommand]:
         """Iterate over all commands that are not confirmed yet."""
@@ -81,12 +108,37 @@ class Commanded:
 
     def flying(self, entity: Name, given: GivenCommand) -> Commanded:
         """Return the value with the command of a flight."""
-        return replace(self, flights={**self.flights, entity: given})
+        begins = {name: at for name, at in self.begins.items() if name != entity}
+        return replace(self, flights={**self.flights, entity: given}, begins=begins)
 
     def arrived(self, entities: Iterable[Name]) -> Commanded:
-        """Return the value without the flights of some vehicles."""
+        """Return the value without the flights of some vehicles: each stays around its last point."""
         over = frozenset(entities)
-        return replace(self, flights={name: each for name, each in self.flights.items() if name not in over})
+        ways = {name: each.way for name, each in self.flights.items() if name in over}
+        rests = {name: FlownWay((way.end,), way.to) for name, way in ways.items() if way is not None}
+        flights = {name: each for name, each in self.flights.items() if name not in over}
+        return replace(self, flights=flights, rests={**self.rests, **rests})
+
+    def overridden(self, entities: Iterable[Name]) -> Commanded:
+        """Return the value in which nothing is known of the points at which some vehicles stay."""
+        lost = frozenset(entities)
+        if lost.isdisjoint(self.rests) and lost.isdisjoint(self.begins):
+            return self
+        rests = {name: way for name, way in self.rests.items() if name not in lost}
+        begins = {name: at for name, at in self.begins.items() if name not in lost}
+        return replace(self, rests=rests, begins=begins)
+
+    def progressed(self, entity: Name, at: Geometry, near: float) -> Commanded:
+        """Return the value after a sighting of a vehicle, which may have passed places of its VIA."""
+        given = self.flights.get(entity)
+        if given is None or not isinstance(given.command, Follow) or given.begin is None or given.way is None:
+            return self
+        way = given.way.progressed(at, near)
+        return (
+            self
+            if way is given.way or way.passed - 1 <= given.passed
+            else self.flying(entity, replace(given, passed=way.passed - 1))
+        )
 
     def handing_over(self, entity: Name, given: GivenCommand) -> Commanded:
         """Return the value with a hand-over."""

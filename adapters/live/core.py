@@ -10,6 +10,7 @@ from dataclasses import replace
 
 from adapters.live.agent_rounds import go_on
 from adapters.live.batch import Batch
+from adapters.live.commanded import Commanded
 from adapters.live.fallbacks import answers_for
 from adapters.live.flying import remember
 from adapters.live.ingest import take_in
@@ -17,13 +18,17 @@ from adapters.live.live_state import LiveState
 from adapters.live.operator_commands import answer
 from adapters.live.order_progress import repeat_refused
 from adapters.live.plan import Plan
+from adapters.live.property_watch import watch_properties
 from adapters.live.request_timeouts import check_limits
 from adapters.live.scheduling import in_turn
 from adapters.live.step_taking import check_times
 from adapters.live.turn_in_progress import Turning
 from adapters.live.turn_result import Turn
+from adapters.live.way_watch import watch_ways
+from physical import centroid
 from semantics.environment import Says
 from semantics.state.configuration import Configuration
+from semantics.state.physical_model import Placed
 from semantics.state.requests import READY
 from semantics.state.signature import Name
 from semantics.state.station_partition import is_parted
@@ -46,6 +51,7 @@ def advance(plan: Plan, state: LiveState, batch: Batch, now: float, most: int = 
     go_on(turning, most)
     check_limits(turning)
     check_times(turning)
+    watch_properties(turning)
     return turning.turn()
 
 
@@ -60,6 +66,7 @@ def _taken_in(plan: Plan, state: LiveState, batch: Batch, now: float) -> Turning
         missed = f"this process did not listen for {batch.missed:.0f} s; that time does not count as silence"
         turning.find("trouble", "", missed)
     take_in(turning, batch)
+    watch_ways(turning)
     return turning
 
 
@@ -115,4 +122,8 @@ def resumed(plan: Plan, state: LiveState, now: float) -> LiveState:
 
 def started(plan: Plan) -> LiveState:
     """Return the state in which a run of a mission begins."""
-    return LiveState(plan.first)
+    physical = plan.first.structure.physical
+    ours = [name for name, owner in plan.vehicles.items() if owner != plan.peers]
+    placed = {name: physical.placement(name) for name in sorted(ours)}
+    begins = {name: centroid(at.geometry) for name, at in placed.items() if isinstance(at, Placed)}
+    return LiveState(plan.first, commanded=Commanded(begins=begins))

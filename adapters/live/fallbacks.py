@@ -10,11 +10,17 @@ from semantics.state.signature import Name
 from semantics.state.station_partition import HERE, is_parted
 
 
-def breaks(turning: Turning, assumption: str, about: Name, kind: str = "broken assumption") -> None:
-    """Report a broken assumption, or another end of a flight, and respond with the mission's fallback."""
+def breaks(
+    turning: Turning,
+    assumption: str,
+    about: Name,
+    kind: str = "broken assumption",
+    response: Fallback | None = None,
+) -> None:
+    """Report a broken assumption, or another end of a flight, and respond with a fallback: by default the mission's."""
     if not answers_for(turning, about):
         return
-    fallback = turning.plan.precautions.on_broken
+    fallback = turning.plan.precautions.on_broken if response is None else response
     found = turning.find(kind, about, assumption, fallback.value, once=True)
     if found and not turning.overrides.suspended:
         fall_back(turning, fallback, tuple(sorted(turning.plan.vehicles)))

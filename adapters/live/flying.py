@@ -9,8 +9,9 @@ from adapters.live.commanded import GivenCommand
 from adapters.live.scheduling import in_turn
 from adapters.live.step_taking import observe
 from adapters.live.turn_in_progress import Turning
+from adapters.live.way_watch import is_level, keeps_near
 from adapters.plugin import Accepted, Arrived, Follow, GoTo, HandOver
-from physical import leads_straight, standing
+from physical import Geometry, centroid, leads_straight, standing
 from semantics.control import commits, realisations
 from semantics.observed_steps import Sight, arriving
 from semantics.state.physical_model import Placed, placement_cell
@@ -57,10 +58,16 @@ def flies(turning: Turning, entity: Name) -> bool:
 
 
 def _is_there(turning: Turning, entity: Name) -> bool:
-    """Return whether the straight way from a vehicle's last position to its waypoint keeps to its surroundings."""
+    """Return whether the straight way from a vehicle's last position to its waypoint keeps to its surroundings.
+
+    It must also be in its band, and as near to its waypoint as the mission says that it strays.
+    """
     given, at = turning.commanded.flights[entity], turning.where_seen(entity)
     if not isinstance(at, Placed) or not isinstance(given.command, GoTo | Follow):
         return True
+    assert given.way is not None
+    if not keeps_near(turning, entity, at.geometry, given.way.end) or not is_level(turning, entity):
+        return False
     assert given.goal is not None
     around = replace(given.command.around, inside=(given.goal, *given.command.around.inside))
     to = given.waypoint or standing(at.geometry, given.goal, around, 0.0)
@@ -96,7 +103,8 @@ def ask_anew(turning: Turning, entity: Name) -> None:
         return
     going = renewed(turning.c, fly, given.command, turning.plan.first) or given.command
     command = replace(going, request=turning.request_of(given.agent))
-    turning.commanded = turning.commanded.flying(entity, GivenCommand(command, given.agent, given.since))
+    again = GivenCommand(command, given.agent, given.since, begin=_seen_at(turning, entity))
+    turning.commanded = turning.commanded.flying(entity, again)
     turning.command(command)
 
 
@@ -118,8 +126,23 @@ def _send_on(turning: Turning, entity: Name, given: GivenCommand, place: Name) -
         return  # it would fly its whole way again
     command = renewed(turning.c, fly, given.command, turning.plan.first)
     if command is not None:
-        turning.commanded = turning.commanded.flying(entity, GivenCommand(command, given.agent, given.since))
+        renewed_from = _seen_at(turning, entity) or given.begin
+        again = GivenCommand(command, given.agent, given.since, begin=renewed_from)
+        turning.commanded = turning.commanded.flying(entity, again)
         turning.command(command)
+
+
+def begin_of(turning: Turning, entity: Name) -> Geometry | None:
+    """Return the point from which a new command leads a vehicle: its last point, the mission's, or where it is seen."""
+    rest = turning.commanded.rests.get(entity)
+    if rest is not None:
+        return rest.end
+    return turning.commanded.begins.get(entity) or _seen_at(turning, entity)
+
+
+def _seen_at(turning: Turning, entity: Name) -> Geometry | None:
+    at = turning.where_seen(entity)
+    return centroid(at.geometry) if isinstance(at, Placed) else None
 
 
 def _flight(turning: Turning, given: GivenCommand) -> FLY | None:
@@ -147,4 +170,8 @@ def _remember_flight(turning: Turning, fly: FLY) -> None:
         assert found is not None
         going = journey(turning.c, found, node, place, turning.request_of(fly.agent), turning.plan.first)
         if going is not None:
-            turning.commanded = turning.commanded.flying(node, GivenCommand(going, fly.agent, turning.now))
+            rest, transit = turning.commanded.rests.get(node), turning.c.structure.physical.transit(node)
+            origin = None if transit is None else centroid(transit.origin.geometry)
+            begin = origin if rest is None else rest.end
+            given = GivenCommand(going, fly.agent, turning.now, begin=begin)
+            turning.commanded = turning.commanded.flying(node, given)

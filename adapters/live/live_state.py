@@ -10,6 +10,7 @@ from adapters.live.fresh_placements import Sightings
 from adapters.live.operator_findings import Reported
 from adapters.live.overrides import Overrides
 from adapters.live.scheduling import AgentProgress
+from adapters.live.watched import Watched
 from semantics.state.configuration import Configuration
 
 
@@ -26,6 +27,7 @@ class LiveState:
         agents: How far agents have come.
         due: What is due.
         reported: What was reported to the operator.
+        watched: What the run watches of ways.
     """
 
     configuration: Configuration
@@ -36,6 +38,7 @@ class LiveState:
     agents: AgentProgress = field(default_factory=AgentProgress)
     due: DueTimes = field(default_factory=DueTimes)
     reported: Reported = field(default_factory=Reported)
+    watched: Watched = field(default_factory=Watched)
 
     def later(self, seconds: float) -> LiveState:
         """Return the state with all ages and waiting times shifted by a time without listening."""

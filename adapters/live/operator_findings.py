@@ -10,8 +10,9 @@ class Finding:
     """A message to the operator.
 
     Attributes:
-        kind: `broken assumption`, `refused`, `taken over`, `given back`, `ordered`, `confirmed` (an order), `lost
-            link`, `link restored`, `late`, `blocked`, `failed` (a computation, the recording, a plugin), `trouble`.
+        kind: `broken assumption`, `broken property`, `refused`, `taken over`, `given back`, `ordered`, `confirmed` (an
+            order), `lost link`, `link restored`, `late`, `blocked`, `failed` (a computation, the recording, a plugin),
+            `trouble`.
         about: The entity or agent.
         message: One line.
         time: Its time.
@@ -28,8 +29,8 @@ class Finding:
 
 
 def is_breach(finding: Finding) -> bool:
-    """Return whether it breaches an assumption of the mission, or causes a fallback."""
-    return finding.kind == "broken assumption" or bool(finding.fallback)
+    """Return whether it breaches an assumption or a property of the mission, or causes a fallback."""
+    return finding.kind in ("broken assumption", "broken property") or bool(finding.fallback)
 
 
 MOST_REPORTED = 1_000

@@ -124,6 +124,10 @@ class Overrides:
         yield from sorted(self.fallbacks.items())
         yield from sorted(self.orders.items())
 
+    def is_overridden(self, entity: Name) -> bool:
+        """Return whether the mission does not command a vehicle: others do, or its fallback was ordered."""
+        return entity in self.taken or entity in self.fallbacks or entity in self.orders
+
     def stops(self, agent: Name) -> bool:
         """Return whether an agent's controls are no longer served."""
         return self.suspended or agent in self.grounded

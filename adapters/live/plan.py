@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from semantics.live_policy import LivePolicy
+from semantics.properties.property import Property
 from semantics.state.configuration import Configuration
 from semantics.state.signature import Name
 
@@ -20,6 +21,8 @@ class Plan:
         precautions: The mission's responses to broken assumptions and exceeded time limits.
         strict: Whether other requests wait while a vehicle confirms a hand-over, since the verdict is for `fcfs` only.
         peers: The plugin of the other stations, which also reports vehicles; empty if there are none.
+        invariants: The mission's invariants about ways, which the run watches.
+        fixed: The entities that never move: where they are not seen, they are where the mission has them.
     """
 
     first: Configuration
@@ -27,3 +30,5 @@ class Plan:
     precautions: LivePolicy = field(default_factory=LivePolicy)
     strict: bool = False
     peers: str = ""
+    invariants: tuple[Property, ...] = ()
+    fixed: frozenset[Name] = frozenset()

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 from adapters.live.command_planning import is_done, journey, needed_hand_overs, unshown
 from adapters.live.commanded import GivenCommand
+from adapters.live.flying import begin_of
 from adapters.live.scheduling import served, to_serve
 from adapters.live.step_taking import take
 from adapters.live.turn_in_progress import Turning
@@ -79,7 +80,7 @@ def _set_out(turning: Turning, request: CTR, way: Realisation) -> bool:
         going = journey(turning.c, way, node, place, name, first)
         if going is None:
             return False
-        given = GivenCommand(going, request.agent, turning.now)
+        given = GivenCommand(going, request.agent, turning.now, begin=begin_of(turning, node))
         turning.commanded = turning.commanded.flying(node, given)
         turning.command(going)
     return True

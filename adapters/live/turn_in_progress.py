@@ -54,6 +54,7 @@ class Turning:
         self.agents = state.agents
         self.due = state.due
         self.reported = state.reported
+        self.watched = state.watched
         self.done: float | None = None
         self.results = Results()
         self._fences = Fences(self.c)
@@ -75,6 +76,7 @@ class Turning:
             self.agents,
             self.due,
             self.reported.counted(len(found.findings)),
+            self.watched,
         )
         return Turn(
             state,

@@ -9,6 +9,7 @@ from dataclasses import replace
 from typing import Any, Final
 
 from adapters.addresses import parse_address
+from adapters.mavlink import loiter_circle
 from adapters.mavlink import pilot as piloting
 from adapters.mavlink import roster as rosters
 from adapters.mavlink.codec import Decoder, Encoder, Garbage
@@ -149,6 +150,12 @@ class Autopilot:
         """Return the reason why a vehicle can't pass a place; None if it can."""
         pilot = self._pilots[entity]
         return impassable(place, pilot.craft, pilot.known, name, pilot.on_board)
+
+    def circle(self, entity: str) -> float:
+        """Return the diameter in metres of a vehicle's circle; 0 if it hovers, or its kind is unknown."""
+        pilot = self._pilots[entity]
+        profile = pilot.known.profile
+        return 0.0 if profile is None else 2 * loiter_circle.circle(pilot.craft, profile, pilot.known)
 
     def is_known(self) -> bool:
         """Return whether all vehicles have reported their parameters, or were asked for long enough."""

@@ -6,9 +6,13 @@ from dataclasses import fields
 from typing import Any
 
 from adapters.live.batch import Acknowledging, GivingBack, Heard, Ordering, Saying
+from adapters.live.flown_ways import FlownWay
+from adapters.live.live_state import LiveState
 from adapters.live.operator_findings import Finding
+from adapters.live.seen_regions import way_of
 from adapters.live.timing_monitor import Timers, flying
 from adapters.live.turn_result import Answer, LiveStep
+from adapters.live.watched import WatchedInvariant
 from adapters.plugin import Aged, Battery, Command, Gone, Presence, Report, Seen, Status, StatusText
 from physical import Band, Geometry, PhysicalProperty
 from semantics.state.canonical import digest_of_step
@@ -114,6 +118,24 @@ def flights_json(timers: Timers | None) -> dict[Name, dict[str, Any]]:
         each.vehicle: {"to": each.destination, "since": each.since, "least": each.least, "most": each.most}
         for each in under_way
     }
+
+
+def ways_json(state: LiveState) -> dict[Name, dict[str, Any]]:
+    """Return the way of each vehicle that the mission commands as plain data."""
+    commanded, overrides = state.commanded, state.overrides
+    names = commanded.flights.keys() | commanded.rests.keys()
+    ways = {name: way_of(name, commanded, overrides) for name in sorted(names)}
+    begins = {name: FlownWay((at,)) for name, at in commanded.begins.items()}
+    return {
+        name: {"to": way.to, "points": [each.ring[0] for each in way.points], "passed": way.passed}
+        for name, way in (begins | ways).items()
+        if way is not None
+    }
+
+
+def invariant_json(watched: WatchedInvariant) -> dict[str, Any]:
+    """Return an invariant about ways, compared with what is seen, as plain data."""
+    return {each.name: getattr(watched, each.name) for each in fields(watched)}
 
 
 def finding_json(finding: Finding, verdicts: tuple[str, ...] = ()) -> dict[str, Any]:

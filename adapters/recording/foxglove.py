@@ -39,6 +39,7 @@ SEVERITIES: Final = (FATAL, FATAL, FATAL, ERROR, WARNING, INFO, INFO, DEBUG)
 
 FINDINGS: Final = {
     "broken assumption": ERROR,
+    "broken property": ERROR,
     "failed": ERROR,
     **dict.fromkeys(("refused", "taken over", "lost link", "late", "blocked"), WARNING),
 }

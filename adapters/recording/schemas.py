@@ -187,6 +187,39 @@ FLIGHT: Final = _object(
     },
 )
 
+WAY: Final = _object(
+    "The points to which a vehicle is sent: written when they change.",
+    ("vehicle", "way"),
+    vehicle=_TEXT,
+    way={
+        "type": ["object", "null"],
+        "description": "Null while the mission does not command it.",
+        "required": ["to", "points", "passed"],
+        "properties": {
+            "to": {**_TEXT, "description": "Where it ends; empty where the vehicle was never sent."},
+            "points": {
+                **RING,
+                "description": "Latitude and longitude of each point in 1e-7 degree, the first behind.",
+            },
+            "passed": {"type": "integer", "minimum": 1, "description": "How many are certainly behind it."},
+        },
+    },
+)
+
+INVARIANT: Final = _object(
+    "An invariant about ways, compared with what is seen: at once when it becomes true or false, else once a second.",
+    ("property", "holds", "figure", "entities", "points"),
+    property=_TEXT,
+    holds={"type": "boolean"},
+    figure={**_TEXT, "description": "Such as: uav0 may come within 42 m of uav1; at least 50 m."},
+    entities={**_TEXTS, "description": "The entities of the figure."},
+    points={
+        "type": "array",
+        "description": "The points that show it, in degrees.",
+        "items": {"type": "array", "items": _NUMBER, "minItems": 2, "maxItems": 2},
+    },
+)
+
 COMMAND: Final = _object(
     "A command to a vehicle: written before it is sent.",
     ("command", "request", "entity"),
@@ -316,6 +349,8 @@ SCHEMAS: Final[dict[str, tuple[str, dict[str, Any]]]] = {
     "deadlines": (f"bigactors.deadline/{VERSION}", DEADLINE),
     "clocks": (f"bigactors.clocks/{VERSION}", CLOCKS),
     "flights": (f"bigactors.flight/{VERSION}", FLIGHT),
+    "ways": (f"bigactors.way/{VERSION}", WAY),
+    "invariants": (f"bigactors.invariant/{VERSION}", INVARIANT),
     "commands": (f"bigactors.command/{VERSION}", COMMAND),
     "reports": (f"bigactors.plugin_report/{VERSION}", REPORT),
     "sayings": (f"bigactors.saying/{VERSION}", SAYING),

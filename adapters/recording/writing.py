@@ -10,6 +10,7 @@ from typing import Any, Final
 from adapters.live.batch import Heard
 from adapters.live.operator_findings import Finding
 from adapters.live.turn_result import Turn
+from adapters.live.watched import WatchedInvariant
 from adapters.plugin import Report, Seen, entity_of
 from adapters.rate_limit import Ration, Turns
 from adapters.recording.encoding import (
@@ -19,9 +20,11 @@ from adapters.recording.encoding import (
     command_json,
     finding_json,
     flights_json,
+    invariant_json,
     report_json,
     seen_json,
     step_json,
+    ways_json,
 )
 from adapters.recording.foxglove import FoxgloveMessage, Showing, simplified
 from adapters.recording.mcap_files import McapWriter, Message
@@ -31,6 +34,9 @@ from semantics.state.signature import Name
 
 MOST_ARRIVALS: Final = 100
 """The most arrivals written in a second, for each entity of the mission, and for all others of one plugin."""
+
+FIGURES_EVERY: Final = 1.0
+"""Seconds between two figures of an invariant about ways that stays true, or false."""
 
 AT_MOST: Final = 0.1
 """Seconds for which new messages may stay hidden from readers of the growing file."""
@@ -58,7 +64,8 @@ class Recorder:
         self._ration: Ration[tuple[str, str]] = Ration(MOST_ARRIVALS)
         self._turns: defaultdict[str, Turns[str]] = defaultdict(lambda: Turns(MOST_ARRIVALS))
         self._clocks: dict[str, float] = {}
-        self._standing: dict[str, Mapping[Name, Any]] = {"deadlines": {}, "flights": {}}
+        self._standing: dict[str, Mapping[Name, Any]] = {"deadlines": {}, "flights": {}, "ways": {}}
+        self._invariants: dict[str, tuple[WatchedInvariant, float]] = {}
         self._file = McapWriter(path, {topic: simplified(schema) for topic, schema in SCHEMAS.items()})
         self._put("run", now, {"schema": RUN["properties"]["schema"]["const"], **run})
         self._show(now, self._showing.places(fixed, run.get("fences", {})))
@@ -94,6 +101,8 @@ class Recorder:
             self._put("steps", step.time, step_json(step))
         self._stands("deadlines", "agent", "until", turn.state.due.timeouts, now)
         self._stands("flights", "vehicle", "takes", flights_json(turn.state.due.timers), now)
+        self._stands("ways", "vehicle", "way", ways_json(turn.state), now)
+        self._watched(turn.state.watched.standings, now)
         for command in turn.commands:
             self._put("commands", now, command_json(command))
         for finding in turn.findings:
@@ -115,6 +124,16 @@ class Recorder:
         for name in sorted(standing.keys() | before.keys()):
             if (value := standing.get(name)) != before.get(name):
                 self._put(topic, now, {of: name, what: value})
+
+    def _watched(self, invariants: Iterable[WatchedInvariant], now: float) -> None:
+        """Write the invariants about ways: at once when one becomes true or false, its new figure once a second."""
+        for each in invariants:
+            known = self._invariants.get(each.property)
+            if known is None or (
+                each != known[0] and (each.holds != known[0].holds or now - known[1] >= FIGURES_EVERY)
+            ):
+                self._invariants[each.property] = (each, now)
+                self._put("invariants", now, invariant_json(each))
 
     def copy(self, messages: Iterable[Message]) -> None:
         """Write the messages of another recording, so that this one needs no other."""

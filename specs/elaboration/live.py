@@ -10,15 +10,25 @@ from specs.elaboration.statements import check_duration
 
 
 def elaborate_live(mission: s.Mission, names: Names) -> LivePolicy:
-    """Return the fallbacks and time limits of a mission; by default vehicles hold on a broken assumption."""
+    """Return the fallbacks and time limits of a mission.
+
+    By default vehicles hold on a broken assumption, and go on after a broken property.
+    """
     written = [item for section in mission.each(s.Live) for item in section.precautions]
-    on_broken = [item for item in written if isinstance(item, s.OnBroken)]
     limits = [item for item in written if isinstance(item, s.TimeLimit)]
-    for again in on_broken[1:]:
-        message = "'on broken assumption' is written twice"
-        names.findings.add(Code.REPEATED_SETTING, again, message, "leave one of the two out")
-    fallback = Fallback(on_broken[0].fallback) if on_broken else Fallback.HOLD
-    return LivePolicy(fallback, tuple(_limit(item, names) for item in _different(limits, names)))
+    fallbacks: dict[str, Fallback] = {}
+    for item in written:
+        if not isinstance(item, s.OnBroken):
+            continue
+        if item.what in fallbacks:
+            message = f"'on broken {item.what}' is written twice"
+            names.findings.add(Code.REPEATED_SETTING, item, message, "leave one of the two out")
+        fallbacks.setdefault(item.what, Fallback(item.fallback))
+    return LivePolicy(
+        fallbacks.get("assumption", Fallback.HOLD),
+        tuple(_limit(item, names) for item in _different(limits, names)),
+        fallbacks.get("property", Fallback.CONTINUE),
+    )
 
 
 def _limit(node: s.TimeLimit, names: Names) -> TimeLimit:

@@ -160,7 +160,8 @@ class Strays(Node):
     """`UAV strays at most 30 m`, `uav0 strays at most 30 m`: the farthest distance of a vehicle from its way.
 
     The way is the shortest line between the points to which it is sent; take-off, turns and wind are included. The
-    clause of a vehicle replaces that of its kind. It only bounds [regions](#regions).
+    clause of a vehicle replaces that of its kind. It bounds [regions](#regions), and a run
+    watches it.
     """
 
     vehicle: Name

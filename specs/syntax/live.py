@@ -1,4 +1,4 @@
-"""The `live` section: the reactions of vehicles to a broken assumption or a slow request."""
+"""The `live` section: the reactions of vehicles to a broken assumption or property, or a slow request."""
 
 from __future__ import annotations
 
@@ -11,11 +11,13 @@ from specs.syntax.statements import Duration
 
 @node
 class OnBroken(Node):
-    """`on broken assumption: return`: hold (the default), return or continue.
+    """`on broken assumption: return`, `on broken property: hold`: hold, return or continue.
 
-    The reaction of vehicles to a change of the world that the environment section does not allow.
+    The reaction of vehicles to a change of the world that the environment section does not allow: by default they hold.
+    Or their reaction to an invariant about ways that is false of what is seen: by default they go on.
     """
 
+    what: str
     fallback: str
 
 

@@ -70,6 +70,7 @@ ONE_OF = {
     (s.TimeLimit, "request"): [None, *REQUESTS],
     (s.TimeLimit, "fallback"): FALLBACKS,
     (s.OnBroken, "fallback"): FALLBACKS,
+    (s.OnBroken, "what"): ["assumption", "property"],
     (s.StandardProperty, "name"): ["local_consistency", "race_freedom", "deadlock_freedom", "arrival"],
     (s.Scheduler, "name"): ["program_order", "unordered", "fcfs"],
     (s.ControlMode, "name"): ["atomic", "timed"],

@@ -21,6 +21,12 @@ def test_precautions_are_read_in_the_order_written():
     )
 
 
+def test_a_broken_property_has_a_response_of_its_own_and_vehicles_go_on_without_one():
+    assert precautions_of("").on_broken_property is Fallback.CONTINUE
+    both = precautions_of("live { on broken property: hold; on broken assumption: return }")
+    assert both == LivePolicy(Fallback.RETURN, (), Fallback.HOLD)
+
+
 def test_precautions_change_nothing_that_is_checked():
     limited = elaborated(WORLD + "live { a within 1 s: return }")
     assert elaborated(WORLD).initial == limited.initial

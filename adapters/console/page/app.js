@@ -14,6 +14,7 @@ import { Preflight } from "./preflight.js";
 import { Store } from "./store.js";
 import { openTab, Panel, PANELS, TabList, usePhone } from "./tabs.js";
 import { neighbour, SPEEDS, Timeline } from "./timeline.js";
+import { Ways } from "./ways.js";
 import { Who } from "./operator_name.js";
 
 /** Milliseconds within which a connection under a new name must open; after them the action is not sent. */
@@ -309,6 +310,7 @@ function Screen({ app }) {
       <section class="map-area" id="area-map" aria-label="Map" key="map"><${MapElement} app=${app} /><${MapTools} app=${app} />${phone && html`<${Subject} app=${app} />`}</section>
       <aside key="side" id="area-vehicles">
         ${(!phone || tab === "vehicles") && html`<${Cards} app=${app} key="cards" />`}
+        ${(!phone || tab === "vehicles") && html`<${Ways} app=${app} key="ways" />`}
         ${!phone && html`<${TabList} key="tabs" app=${app} phone=${false} />`}
         <${Panel} app=${app} phone=${phone} key="panel" />
       </aside>

@@ -88,6 +88,8 @@ def run(options: Namespace) -> Exit:
         _introduce(recording)
     for line in paced(trace, found.times, options.speed, stepwise=options.step):
         say(line)
+    if recording is not None:
+        _tell_breaches(recording)
     say(f"c{len(trace)} = {print_configuration(trace.configurations[-1])}")
     again = f", and {print_loop(trace)}" if trace.loop is not None else ""
     say(f"{options.trace}: {len(trace)} steps replayed on {found.mission.name}{again}")
@@ -130,6 +132,15 @@ def _introduce(recording: Recording) -> None:
         tell(f"{recording.left_out:,} arrivals were not recorded: more came in a second than are written")
     if recording.torn:
         tell("the recording has no end: the run was killed")
+
+
+def _tell_breaches(recording: Recording) -> None:
+    """Print the broken assumptions and properties of a recorded run, with their times from its first message on."""
+    begin = recording.messages[0].time if recording.messages else 0.0
+    for message in recording.of("findings"):
+        kind, said = message.data.get("kind"), message.data.get("message")
+        if kind in ("broken assumption", "broken property") and isinstance(said, str):
+            tell(f"{said:.400}", f"{message.time - begin:8.1f} s  {kind}:")
 
 
 def paced(trace: Trace, times: Sequence[float], speed: float | None, *, stepwise: bool) -> Iterator[str]:

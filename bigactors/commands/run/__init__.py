@@ -23,11 +23,13 @@ from bigactors.exits import Exit
 DESCRIPTION: Final = """\
 Fly a mission: the verified rules move one configuration, as telemetry and feeds permit. A run begins only with a
 verdict on exactly this mission under 'control timed' that everything holds (check --verdict), and in a world as in the
-mission's environment section. A broken assumption, a refused command and a late report are printed at once.
+mission's environment section. A broken assumption, an invariant about ways that is false of what is seen, a refused
+command and a late report are printed at once.
 
 exit codes:
   0  the mission came to its end
-  1  an assumption broke, the recording or a plugin failed, or the world at the beginning was not the mission's
+  1  an assumption or an invariant about ways broke, the recording or a plugin failed, or the world at the
+     beginning was not the mission's
   2  a mistake in the input, no verdict, or a silent vehicle
   3  stopped before its end, by --for, Ctrl-C, SIGTERM or SIGHUP; each vehicle goes on with its last command"""
 

@@ -8,7 +8,7 @@ import time
 from argparse import Namespace
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import AsyncExitStack, ExitStack, closing, contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -32,7 +32,7 @@ from bigactors.commands.run.console_beside import console_beside, recorded
 from bigactors.commands.run.preflight_checks import check_flyable, check_idle, check_places, get_to_know
 from bigactors.commands.run.starting import Start, StartChecks, stand_by
 from bigactors.commands.run.station_flight import Company, company_of, parting_json
-from bigactors.commands.run.unwatched_ways import check_ways
+from bigactors.commands.run.way_checks import check_ways, watchable
 from bigactors.exits import Exit
 from bigactors.files import check_writable
 from bigactors.flight_watchers import Log, Tape, Terminal
@@ -97,6 +97,10 @@ def _run(flight: Flight, options: Namespace) -> Exit:
         terminal.goes_on(flight.resumed.broken, flight.resumed.taken)
         if flight.mission.setting.timing is not None and flight.resumed.timers is None:
             tell("the recording lacks the start of the mission: all clocks begin anew")
+        if flight.mission.setting.strays and not flight.resumed.ways:
+            tell(
+                "the recording lacks the ways of vehicles: how far they stray is watched from their next flights on"
+            )
     try:
         with record(flight) as tape, _published(options.publish) as ros:
             lookers = (
@@ -116,14 +120,15 @@ def _run(flight: Flight, options: Namespace) -> Exit:
     except KeyboardInterrupt:
         tell(f"interrupted: vehicles go on with their last command{standing(terminal.state or flight.state)}")
         return Exit.INCOMPLETE
-    return conclude(ending, broken=terminal.broken)
+    return conclude(ending, broken=terminal.broken, property_broken=terminal.property_broken)
 
 
-def conclude(ending: Ending, *, broken: bool) -> Exit:
+def conclude(ending: Ending, *, broken: bool, property_broken: bool = False) -> Exit:
     """Print the end of a run, and return its exit code."""
-    breach = "; an assumption was broken" if broken else ""
+    what = [*(["an assumption"] if broken else []), *(["a property"] if property_broken else [])]
+    breach = f"; {' and '.join(what)} {'were' if len(what) > 1 else 'was'} broken" if what else ""
     say(f"{ending.reason} after {ending.state.number} steps{breach}{standing(ending.state)}")
-    if broken:
+    if what:
         return Exit.VIOLATED
     overrides = ending.state.overrides
     done = ending.reason == "the mission has ended" and not (overrides.taken or overrides.owing)
@@ -139,19 +144,19 @@ def prepare(options: Namespace) -> Flight:
     log = None if options.record is None else Log(_log_beside(options.record))
     plugins, owners = plugins_of(options, mission, log)
     check_flyable(mission)
-    check_ways(mission, is_verified=licence is not None)
     strict = licence is not None and licence.scheduler is Scheduler.FCFS
-    plan = Plan(mission.initial, owners, mission.precautions, strict)
+    plan = Plan(mission.initial, owners, mission.precautions, strict, fixed=mission.fixed)
     before = None if options.resume is None else resume(options.resume, mission)
     company = company_of(options, mission, before)
     if company is not None:
         plan, plugins = company.plan(plan, mission), company.plugins(plugins)
+    plan = replace(plan, invariants=watchable(mission, plan.first))
     state = started(plan)
     if before is not None:
         known = LiveState(
             before.configuration,
             before.steps,
-            commanded=Commanded(count=before.orders),
+            commanded=Commanded.resumed(before.orders, before.ways),
             overrides=Overrides(before.taken, before.standing_orders),
             due=DueTimes(timers=before.timers, stopped=before.until),
             reported=Reported(count=len(before.broken)),
@@ -328,6 +333,7 @@ async def fly(
             check_idle(live, takes_over=takes_over)
             await get_to_know(flight.plugins, obeying(flight.plan, live.state))
             check_places(flight.mission, flight.plugins)
+            check_ways(flight.plan, flight.mission, flight.plugins, live.state.sightings.newest)
         flight.start.begun = True
         settle()
         say(f"{flight.mission.name} begins; bigactors status, say, hold and return reach it at {path}")

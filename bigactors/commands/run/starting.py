@@ -9,8 +9,10 @@ from typing import Any, Final
 
 from adapters.live.core import obeying
 from adapters.live.loop import LiveRun
+from adapters.live.plan import Plan
 from adapters.plugin import Plugin, Status
 from bigactors.commands.run.preflight_checks import check_idle, check_places, get_to_know
+from bigactors.commands.run.way_checks import check_ways, unwatched
 from specs.elaboration import ElaboratedMission
 
 EVERY: Final = 0.25
@@ -104,6 +106,7 @@ async def _check(live: LiveRun, before: StartChecks) -> None:
     check_idle(live, takes_over=before.takes_over)
     await get_to_know(before.plugins, obeying(live.plan, live.state))
     check_places(before.mission, before.plugins)
+    check_ways(live.plan, before.mission, before.plugins, live.state.sightings.newest)
 
 
 # --- the list -----------------------------------------------------------------------------------------
@@ -119,6 +122,16 @@ def _items(live: LiveRun, before: StartChecks, *, checked: bool) -> Iterator[Ite
         heard = vehicle in live.state.sightings.newest
         yield _item(f"{vehicle} is heard", done=heard, detail=_told(said) if said and heard else "")
     yield _item("places and fences fit the vehicles", done=checked)
+    yield from _of_ways(live.plan, before.mission)
+
+
+def _of_ways(plan: Plan, mission: ElaboratedMission) -> Iterator[Item]:
+    """Yield what the run watches of ways, and what it does not."""
+    names = [each.name for each in plan.invariants]
+    if names:
+        yield _item("invariants about ways are watched", detail=", ".join(names))
+    for line in unwatched(plan, mission):
+        yield _item("not watched", detail=line)
 
 
 def _item(what: str, *, done: bool = True, detail: str = "") -> Item:

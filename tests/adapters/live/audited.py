@@ -193,12 +193,13 @@ def flown_in(folder, mission, vehicle, *more, disturbance=GOOD, foe=None, second
 
 
 async def flown_with(flight, vehicle, watchers, disturbance=GOOD, beside=lambda _simulator: ()):
-    """Fly a prepared mission with a simulated vehicle, and what goes on beside it; return how it ended."""
+    """Fly a prepared mission with simulated vehicles, and what goes on beside them; return how it ended."""
+    vehicles = vehicle if isinstance(vehicle, list) else [vehicle]
     flown = asyncio.ensure_future(fly(flight, watchers))
     plugin = flight.plugins[0]
     while not plugin.local and not flown.done():
         await asyncio.sleep(0.05)
-    simulator = Simulator(f"udpout:127.0.0.1:{plugin.local[1]}", [vehicle], disturbance, 7, time.time())
+    simulator = Simulator(f"udpout:127.0.0.1:{plugin.local[1]}", vehicles, disturbance, 7, time.time())
     tasks = [asyncio.ensure_future(each) for each in (simulator.run(), *beside(simulator))]
     try:
         ending = await flown

@@ -5,6 +5,7 @@ from pathlib import Path
 from adapters.live.batch import Batch, Heard
 from adapters.live.commanded import Commanded
 from adapters.live.core import advance, started
+from adapters.live.ground_formulas import about_ways
 from adapters.live.live_state import LiveState
 from adapters.live.plan import Plan
 from adapters.plugin import Accepted, Aged
@@ -59,8 +60,9 @@ def mission(text, name="tour.mission"):
 
 
 def plan_of(text, precautions=None, strict=False):
-    first = mission(text).initial
-    return Plan(first, {"uav0": "autopilot"}, precautions or LivePolicy(), strict)
+    found = mission(text)
+    watched = {"invariants": about_ways(*found.properties), "fixed": found.fixed}
+    return Plan(found.initial, {"uav0": "autopilot"}, precautions or LivePolicy(), strict, **watched)
 
 
 def seen(entity, at, time, plugin="autopilot", kind="UAV", channels=("control:gcs0",), **more):

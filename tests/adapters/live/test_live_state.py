@@ -11,7 +11,7 @@ import adapters.live
 from adapters.live.live_state import LiveState
 
 GO = "BigActor a hosted_at uav0 with_behavior { control(MOVE_HOST_TO east0) }"
-PARTS = ("sightings", "commanded", "overrides", "agents", "due", "reported")
+PARTS = ("sightings", "commanded", "overrides", "agents", "due", "reported", "watched")
 MODULES = tuple(Path(adapters.live.__file__).parent.glob("*.py"))
 
 

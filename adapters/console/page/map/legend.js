@@ -20,6 +20,8 @@ const SIGNS = [
   [[["M2 6 H34 M6 6 v6 M14 6 v6 M22 6 v6 M30 6 v6", "fence"]], "a fence; its teeth are inside"],
   [[["M2 10 H34", "way", null, "10 5"]], "the way it flies; numbers are VIA points"],
   [[["M2 10 H34", "way", null, "2 5"]], "the commanded way, not accepted yet"],
+  [[["M2 4 H34 V16 H2 Z", "wayFill", "wayFill"], ["M2 10 H34", "way", null, "10 5"]], "as far as it may stray from its way"],
+  [[["M5 10 H31 M5 10 m-3 0 a3 3 0 1 0 6 0 a3 3 0 1 0 -6 0 M31 10 m-3 0 a3 3 0 1 0 6 0 a3 3 0 1 0 -6 0", "lost"]], "here an invariant about ways is broken"],
   [[["M18 10 m-6 0 a6 6 0 1 0 12 0 a6 6 0 1 0 -12 0 M9 10 h7 M20 10 h7 M18 1 v7 M18 12 v7", "way", "halo"]], "where it goes"],
   [[["M2 10 H34", "track"]], "where it was; older is fainter"],
   [[["M10 8 V3 H15 M21 3 H26 V8 M26 12 V17 H21 M15 17 H10 V12", "chosen"]], "chosen"],

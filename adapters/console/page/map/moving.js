@@ -21,6 +21,8 @@ const MARKS = ["", "▲", "■", "✖"];
 export function drawMoving(pen, store, tracks, { now, chosen, hovered, slots, covered }) {
   const things = inView(pen.view, store, now, chosen);
   for (const [name, chunk] of tracks.growing()) drawTrack(pen, [joined(chunk, store, name)], 1);
+  for (const way of store.section("ways").values()) drawCorridor(pen, way);
+  for (const invariant of store.section("invariants").values()) if (!invariant.holds) drawBreach(pen, invariant);
   for (const [name, vehicle] of store.section("vehicles")) drawWay(pen, vehicle, store.section("entities").get(name));
   thin(things);
   drawTargets(pen, things);
@@ -221,6 +223,42 @@ function drawWay(pen, card, entity) {
   const points = view.pixels(line);
   points.slice(0, -1).forEach((at, n) => drawVia(pen, at, n + 1));
   drawDestination(pen, points.at(-1));
+}
+
+/** Draw the lines to which a vehicle keeps, as wide as the mission lets it stray. */
+function drawCorridor({ ctx, view, palette }, { points, strays }) {
+  if (!strays || points.length === 0) return;
+  const line = lineOf(points);
+  const radius = Math.max(1, (strays * view.side) / EARTH / Math.cos((points[0][0] * Math.PI) / 180));
+  if (!view.seesLine(line, radius)) return;
+  const path = new Path2D();
+  if (points.length === 1) path.arc(...view.point(points[0]), radius, 0, 2 * Math.PI);
+  else view.trace(path, line);
+  ctx.save();
+  Object.assign(ctx, { lineWidth: 2 * radius, strokeStyle: palette.wayFill, fillStyle: palette.wayFill, lineCap: "round", lineJoin: "round" });
+  if (points.length === 1) ctx.fill(path);
+  else ctx.stroke(path);
+  ctx.restore();
+}
+
+/** Draw the points that show why an invariant about ways is broken, and the line between them. */
+function drawBreach({ ctx, view, palette }, { points }) {
+  if (points.length === 0) return;
+  const line = lineOf(points);
+  if (!view.seesLine(line)) return;
+  ctx.save();
+  Object.assign(ctx, { lineWidth: 2.5, strokeStyle: palette.levels[3] });
+  ctx.beginPath();
+  const pixels = view.pixels(line);
+  pixels.forEach(([x, y], n) => (n === 0 ? ctx.moveTo(x, y) : ctx.lineTo(x, y)));
+  ctx.stroke();
+  ctx.beginPath();
+  for (const [x, y] of pixels) {
+    ctx.moveTo(x + 5, y);
+    ctx.arc(x, y, 5, 0, 2 * Math.PI);
+  }
+  ctx.stroke();
+  ctx.restore();
 }
 
 function drawVia({ ctx, palette, lettering }, [x, y], number) {
