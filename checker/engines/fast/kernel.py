@@ -54,6 +54,69 @@ from checker.engines.fast.tree_compression import (
 _QUARTER = np.uint64(40)
 
 
+@njit(cache=True, forceinline=True)
+def make_successor(
+    m: LearnedModel,
+    x: Any,
+    d: Any,
+    f: FoldedTable | None,
+    source: Words,
+    at: int,
+    row: int,
+    step: int,
+    batch: SuccessorBatch,
+    end: int,
+    state: State,
+) -> int:
+    """Write the stored form of a row's successor to the batch; return less than 0 if something is not learned yet.
+
+    A compressed successor with an unknown piece or node is left open, for `store` to complete. One that must be
+    compared with others can't be: its pieces are added, unless its row can be deferred. Beyond the limit of rows, a
+    successor with an unknown piece is no row.
+    """
+    made, width, kept = batch.kept, state[WORDS], state[KEPT]
+    is_compared = m.steps[STEP * step + ALIKE] >= 0
+    adding = x is None and is_compared and not len(batch.later)
+    if x is not None:
+        there = make_plain(m, f, source, at, step, batch.words, end * width, width, state)
+        if there >= 0:
+            there = put_stored(m, x, d, f, batch.words, end * width, width, adding, made, kept * end, state)
+    elif f is None:
+        there = make_plain(m, f, source, at, step, made, end * width, width, state)
+    else:
+        there = make_folded(m, f, step, adding, made, kept * end, state)
+        if there == NO_ROOM:
+            state[NODE] = FULL
+    if there == UNMET and (x is not None or not is_compared):
+        if state[SIZE] < state[LIMIT]:
+            leave_open(made, kept * end, row, step)
+        there = np.int64(0)
+    return there
+
+
+@njit(cache=True, forceinline=True)
+def is_found_again(
+    m: LearnedModel, x: Any, batch: SuccessorBatch, began: int, end: int, step: int, state: State
+) -> bool:
+    """Return whether the row has an earlier transition with the same label and successor."""
+    if m.steps[STEP * step + ALIKE] < 0:
+        return False
+    if x is None:
+        return is_repeated(batch.kept, batch.steps, m.steps, began, end, step, state[KEPT])
+    return is_repeated(batch.words, batch.steps, m.steps, began, end, step, state[WORDS])
+
+
+@njit(cache=True, forceinline=True)
+def put_off(later: State, row: int, state: State) -> bool:
+    """Defer a row, if there is room."""
+    at = LATER * state[PUT_OFF]
+    if at >= len(later):
+        return False
+    later[at], later[at + 1], later[at + 2] = row, state[GATHERED], state[GATHERED]
+    state[PUT_OFF] += 1
+    return True
+
+
 @njit(cache=True, nogil=True)
 def gather(
     m: LearnedModel,
@@ -71,71 +134,39 @@ def gather(
     environment's. A row that is crowded or not fully learned is deferred if `later` has room.
 
     With symmetry (`x` and scratch space `d`), representatives replace successors. With tree compression (`f`),
-    successors are compressed at once. Each variant is compiled separately. A successor with an unknown piece or node is
-    completed by `store`. So pieces are numbered in the order of successors, whichever thread gathers them. A compressed
-    successor that must be compared with others can't wait; its row is deferred where possible.
+    successors are compressed at once. Each variant is compiled separately. Pieces are numbered in the order of
+    successors, whichever thread gathers them.
     """
-    made, hashes, origins, taken, later = batch.kept, batch.hashes, batch.origins, batch.steps, batch.later
-    width, kept, known = state[WORDS], state[KEPT], True
-    is_full = state[SIZE] >= state[LIMIT]  # then a successor with an unknown piece is no row
+    hashes, taken, kept, known = batch.hashes, batch.steps, state[KEPT], True
     while known and state[AT] < until and state[GATHERED] <= len(hashes) // 2:
         row = state[AT]
-        source, at = words, row * width
+        source, at = words, row * state[WORDS]
         if f is not None:
             unfold(f, words, row)
             source, at = f.whole, np.int64(0)
         began, end = state[GATHERED], state[GATHERED]
         count = list_steps(m, source, at, batch, began, state)
         if count == CROWDED:
-            if len(later):
+            if len(batch.later):
                 count = np.int64(UNKNOWN)  # counted at its final expansion
             else:
                 state[CROWDS] += 1
         known = count != UNKNOWN
         for k in range(began, began + count if known else began):
             step = np.int64(taken[k])
-            is_compared = m.steps[STEP * step + ALIKE] >= 0
-            adding = x is None and is_compared and not len(later)
-            if x is not None:
-                there = make_plain(m, f, source, at, step, batch.words, end * width, width, state)
-                if there >= 0:
-                    there = put_stored(
-                        m, x, d, f, batch.words, end * width, width, adding, made, kept * end, state
-                    )
-            elif f is None:
-                there = make_plain(m, f, source, at, step, made, end * width, width, state)
-            else:
-                there = make_folded(m, f, step, adding, made, kept * end, state)
-                if there == NO_ROOM:
-                    state[NODE] = FULL
-            if there == UNMET and (x is not None or not is_compared):
-                if not is_full:
-                    leave_open(made, kept * end, row, step)
-                there = np.int64(0)
-            known = there >= 0
+            known = make_successor(m, x, d, f, source, at, row, step, batch, end, state) >= 0
             if not known:
                 break
             taken[end] = step
-            if is_compared:
-                again = False
-                if x is None:
-                    again = is_repeated(made, taken, m.steps, began, end, step, kept)
-                else:
-                    again = is_repeated(batch.words, taken, m.steps, began, end, step, width)
-                if again:
-                    continue
-            hashes[end] = hashed(made, kept * end, kept)
-            origins[end] = row
-            end += 1
+            if not is_found_again(m, x, batch, began, end, step, state):
+                hashes[end] = hashed(batch.kept, kept * end, kept)
+                batch.origins[end] = row
+                end += 1
         if known:
             state[GATHERED] = end
-            state[AT] += 1
-        elif LATER * state[PUT_OFF] < len(later):
-            at = LATER * state[PUT_OFF]
-            later[at], later[at + 1], later[at + 2] = row, state[GATHERED], state[GATHERED]
-            state[PUT_OFF] += 1
-            state[AT] += 1
-            known = True
+        else:
+            known = put_off(batch.later, row, state)
+        state[AT] += known
     return known
 
 
