@@ -12,7 +12,7 @@ from checker.engines.contract import Cluster, Engine, Exploration, Keeping, Opti
 from checker.handover import Compilation, Handover
 from checker.limits import BoundMet, CheckPart, Limits, Stop, bounded
 from checker.properties.coverage import coverage
-from checker.properties.findings import MOST_VIOLATIONS, Collected
+from checker.properties.findings import MOST_VIOLATIONS, Collected, Finding
 from checker.properties.inspections import (
     Arrival,
     Computation,
@@ -113,7 +113,7 @@ def check(  # noqa: PLR0913 - independent options
     """
     initial, asked, notes = _asked(start, properties, notes)
     initial, limits = watching(initial, asked), limits or Limits()
-    formulas, reductions = [each.formula for each in asked if each.kind.has_proposition], tuple(reduce)
+    formulas, reductions = _formulas(asked), tuple(reduce)
     timing = initial.setting.timing is not None
     wanted = features(limits, keeping, reductions, cluster=cluster, threads=threads, timing=timing)
     able = engines(wanted, engine)
@@ -150,6 +150,12 @@ def _asked(
     return start, tuple(properties), notes
 
 
+def _formulas(properties: Iterable[Property]) -> list[Proposition]:
+    """Return the propositions about configurations that a reduction has to preserve."""
+    asked = [each for each in properties if each.kind.has_proposition or each.kind.is_of_time]
+    return [formula for each in asked for formula in (each.formula, each.then) if formula is not None]
+
+
 def _reduced(
     initial: Configuration,
     reductions: Iterable[Reduction],
@@ -164,7 +170,7 @@ def _reduced(
 def reductions_of(start: Checkable) -> tuple[Reduction, ...]:
     """Return the reductions that are sound for a mission; they can be combined."""
     timing = start.initial.setting.timing is not None
-    formulas = [each.formula for each in start.properties if each.kind.has_proposition]
+    formulas = _formulas(start.properties)
     initial, sound = watching(start.initial, start.properties), list[Reduction]()
     for reduction in Reduction:
         try:
@@ -367,7 +373,7 @@ class _Check:
         late = next(iter(self.collected(PropertyKind.ARRIVAL).first.values()), None)
         if late is None:
             return self.verdict(asked, collected)
-        message = _teller(self.found, late.at)(late.message)
+        message = _teller(self.found, late)(late.message)
         note = f"{message}; declare that it arrives, or check arrival"
         return self.verdict(asked, collected, note)
 
@@ -434,7 +440,7 @@ class _Check:
                 collected.alike(each),
             )
             for each in collected.chosen()
-            for trace, told in [(trace_of(found, each), _teller(found, each.at))]
+            for trace, told in [(trace_of(found, each), _teller(found, each))]
         )
 
     def witness(self, collected: Collected, found: Exploration) -> Trace | None:
@@ -451,6 +457,6 @@ def _shown(violations: tuple[Violation, ...], most: int) -> tuple[Violation, ...
     return tuple(each for each in shortest if each in kept[:most])
 
 
-def _teller(found: Exploration, number: int) -> Callable[[str], str]:
-    """Return a function that replaces the names of a representative by those of the unreduced run to it."""
-    return lambda text: in_original_names(found, number, text)
+def _teller(found: Exploration, finding: Finding) -> Callable[[str], str]:
+    """Return a function that replaces the names of a representative by those of the unreduced run to a finding."""
+    return lambda text: in_original_names(found, finding.at, text, finding.by)

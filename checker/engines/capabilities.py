@@ -108,8 +108,6 @@ UNSUPPORTED: Final = (
         "the engine 'ray' does not explore missions with a section 'timing' yet", _ENGINE),
     _P(_F.POR, _F.TIMING, _W.MATHEMATICS, "the reduction 'por' is refused: it is not sound for missions with a "
         "section 'timing', whose clock orders independent steps", _REDUCE),
-    _P(_F.SYMMETRY, _F.TIMING, _W.UNBUILT,
-        "the reduction 'symmetry' is refused: it is not proved sound with a section 'timing'", _REDUCE),
     _P(_F.TIMING, _F.RUNS, _W.UNDECIDED,
         "properties of runs without times are not decided", "ask for times: within, time"),
     _P(_F.MODEL, _F.FAST, _W.DESIGN, "the other engines learn the rules of missions", "leave engine out"),

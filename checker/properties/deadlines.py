@@ -125,14 +125,18 @@ class Deadlines:
         awaited = asked.shown if asked.then is None else str(asked.then)
         message = f"still not true at {self.clock(run.end)}{since}: {awaited}"
         details = (*(["it may stay so for ever"] if ever else []), *self._unsaid(trace.configurations[-1]))
-        path = self._path(run, lambda c: holds(asked.then or asked.formula, c), begun if asked.then else 0)
+        path = self._path(run, lambda c, _: holds(asked.then or asked.formula, c), begun if asked.then else 0)
         return Violation("late", message, trace, details, path=path)
 
     def _path(
-        self, run: TimedRun, is_awaited: Callable[[Configuration], bool], since: int = 0
+        self,
+        run: TimedRun,
+        is_awaited: Callable[[Configuration, Name], bool],
+        since: int = 0,
+        about: Name = "",
     ) -> tuple[Leg, ...]:
         """Return the critical path of a run, extended to the awaited event."""
-        onward = self.times.way_to(run, is_awaited)
+        onward = self.times.way_to(run, is_awaited, about)
         return critical_path(self.times.initial, self.times.transitions(run), run, onward, since)
 
     def _unsaid(self, c: Configuration) -> Iterator[str]:
@@ -174,7 +178,7 @@ class Deadlines:
         message = f"{vehicle} lasts {self.text(lasts)}, and is unrestored for longer at {self.clock(run.end)}"
         details = tuple(self._unsaid(trace.configurations[-1]))
         since = run.end - lasts - 1
-        path = self._path(run, lambda c: is_restored(c, vehicle), since)
+        path = self._path(run, is_restored, since, vehicle)
         return Violation("exhausted", message, trace, details, subject=vehicle, path=path)
 
     def schedule(self, asked: Iterable[Property]) -> Schedule:

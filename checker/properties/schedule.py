@@ -6,14 +6,15 @@ import math
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
-from checker.engines.timed.answers import NO_SPAN, TakenStep, Times
+from checker.engines.timed.answers import NO_SPAN, TakenStep, Times, VehicleFlight
 from semantics.behaviours.reaction_rules import moved
 from semantics.state.configuration import Configuration
 from semantics.state.requests import FLY
 from semantics.state.signature import REGION, Name
-from semantics.timing.bounds import WrittenBound, bound_of, timed_by
+from semantics.timing.bounds import WrittenBound, bound_of_flight, timed_by
 from semantics.timing.clocks import TimedStep, TimedView
 from semantics.timing.dates import clock_text
+from semantics.timing.flight_history import travelling
 from semantics.timing.intervals import ANY_TIME, Interval
 
 
@@ -106,14 +107,15 @@ def flights_of(times: Times) -> tuple[PossibleFlight, ...]:
     set_out: dict[tuple[FLY, Name], dict[_Key, None]] = {}
     said: dict[_Key, tuple[Interval, WrittenBound]] = {}
     for at, situation, fly in _steps_of_flights(times, "command"):
-        for key in _keys(situation.c, fly):
+        for flight in _each(times, situation.c, fly):
+            key = _key(flight)
             begun.setdefault(key, set()).add(at)
-            set_out.setdefault((fly, key[0]), {})[key] = None
+            set_out.setdefault((flight.request, flight.vehicle), {})[key] = None
     for at, situation, fly in _steps_of_flights(times, "commit"):
-        step = situation.steps[at.step]
-        interval, bound = timed_by(situation, step).interval, bound_of(situation, step)
-        for arriving in _keys(situation.c, fly):
-            for key in _begun_as(arriving, set_out.get((fly, arriving[0]), ())):
+        interval = timed_by(situation, situation.steps[at.step]).interval
+        for flight in _each(times, situation.c, fly):
+            bound = bound_of_flight(situation.c.setting, flight.travelling)
+            for key in _begun_as(_key(flight), set_out.get((flight.request, flight.vehicle), ())):
                 ended.setdefault(key, set()).add(at)
                 said[key] = _both(said.get(key, (interval, bound))[0], interval), bound
     spans = times.spans([*begun.values(), *ended.values()])
@@ -132,7 +134,7 @@ def flights_of(times: Times) -> tuple[PossibleFlight, ...]:
     return tuple(sorted(found, key=lambda each: (each.begins.earliest, each.ends.earliest, *_key(each))))
 
 
-def _key(flight: PossibleFlight) -> _Key:
+def _key(flight: PossibleFlight | VehicleFlight) -> _Key:
     return flight.vehicle, flight.agent, flight.origin, flight.destination
 
 
@@ -161,10 +163,15 @@ def _flight_of(step: TimedStep) -> FLY | None:
     return label.about if label.rule == "commit" and isinstance(label.about, FLY) else None
 
 
-def _keys(c: Configuration, fly: FLY) -> Iterator[_Key]:
-    """Yield the keys of a flight's vehicles; L keeps a vehicle at its origin until an observation corrects it."""
+def _each(times: Times, c: Configuration, fly: FLY) -> Iterator[VehicleFlight]:
+    """Yield the flight of each vehicle, with the flights alike.
+
+    L keeps a vehicle at its origin until an observation corrects it.
+    """
+    together = tuple(vehicle for vehicle, _ in travelling(c, fly))
     for vehicle, place in moved(fly.reaction, fly.match):
-        yield vehicle, fly.agent, c.structure.logical.parent(vehicle) or REGION, place
+        origin = c.structure.logical.parent(vehicle) or REGION
+        yield from times.alike(VehicleFlight(fly, together, vehicle, fly.agent, origin, place))
 
 
 def _both(one: Interval, other: Interval) -> Interval:

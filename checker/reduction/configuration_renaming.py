@@ -11,6 +11,7 @@ from functools import cached_property
 from typing import Any, Generic, TypeVar
 
 from physical import Geometry
+from physical.extents import Extent
 from semantics.behaviours.observations import All, Nodes, Observation, Of, Swept
 from semantics.behaviours.program import VariableOf
 from semantics.behaviours.reaction_rules import (
@@ -28,12 +29,16 @@ from semantics.state.configuration import Configuration
 from semantics.state.physical_model import Carried, InTransit, Placed
 from semantics.state.requests import request_key
 from semantics.state.setting import Scheduler
+from semantics.timing.flight_history import Adrift
 
 Where = TypeVar("Where", int, Cell)
 
 WORD = re.compile(r"[^\W\d]\w*")
 
-FIXED = (int, Truth, Text, Geometry, Placed, All, NodeVariable, PlaceVariable, LinkVariable, type(None))
+FIXED = (
+    *(int, Truth, Text, Geometry, Extent, Placed, Adrift, All, NodeVariable, PlaceVariable, LinkVariable),
+    type(None),
+)
 """Types without names."""
 
 

@@ -14,11 +14,9 @@ from checker.engines.fast.access_recording import Asked, CellRecorder, CellSourc
 from checker.engines.fast.value_templates import settled
 from checker.reduction.actor_footprints import Acting, Actor, Actors
 from checker.reduction.ample import Ample, disturbed
-from checker.reduction.configuration_renaming import Renaming
 from checker.reduction.footprint_slots import NOTHING, Slot, SlotFootprint
 from checker.reduction.race_footprints import ANSWERS, MARKS, slot_of_mark
 from checker.reduction.static_messages import ConstantMessage
-from checker.reduction.symmetry import MissionSymmetry
 from semantics.behaviours.expressions import Fault
 from semantics.behaviours.observations import Fact
 from semantics.bigactor_rules import say, spawn
@@ -35,7 +33,7 @@ from semantics.state.physical_model import is_aboard
 from semantics.state.printing import print_configuration
 from semantics.state.requests import CTR, FLY, READY, SND
 from semantics.state.signature import REGION, Name
-from semantics.successors import SERVING, by_clause, expand, rules_of, steps
+from semantics.successors import SERVING, by_clause, rules_of, steps
 
 Rule = Callable[[Configuration, Any], Iterable[Transition]]
 """A rule, given a configuration and its agent or clause."""
@@ -344,24 +342,6 @@ def _alone(actors: Actors, c: Configuration, actor: Actor) -> Configuration:
         if actors.serving(each.request) != actor:
             return _alone(actors, c.with_(c.eta.removing(each)), actor)
     return c
-
-
-# --- symmetry -------------------------------------------------------------------------------------------------------
-
-
-def exchange(symmetry: MissionSymmetry, c: Configuration) -> None:
-    """Check that the exchanges of symmetric members commute with the transitions of a configuration.
-
-    Raises:
-        Drift: An exchange does not.
-    """
-    for each in symmetry.classes:
-        for other in range(1, len(each.members)):
-            swap = Renaming(*each.moving((other, *range(1, other), 0, *range(other + 1, len(each.members)))))
-            found = {step.target for step in expand(swap.configuration(c)).transitions}
-            if found != {swap.configuration(step.target) for step in expand(c).transitions}:
-                who = " and ".join(", ".join(each.names[member]) for member in (0, other))
-                raise Drift(f"{who} are not alike, in the configuration\n{print_configuration(c)}")
 
 
 # --- the race monitor's provenance ----------------------------------------------------------------------------------

@@ -8,6 +8,7 @@ from typing import Any
 
 from checker.reduction.alpha_equivalence import VARIABLES, Pairing, Unlike
 from checker.reduction.configuration_renaming import WORD, Mentions, Renaming
+from checker.reduction.exchanged_times import check_times
 from semantics.behaviours.commands import COMMANDS
 from semantics.behaviours.expressions import Fault, Literal
 from semantics.behaviours.patterns import Exactly
@@ -57,6 +58,7 @@ class Automorphisms:
         self._check_program(renaming)
         if frozenset(map(renaming.name, self.c.setting.arriving)) != self.c.setting.arriving:
             raise Unlike("of one flights arrive, of the other not")
+        check_times(self.c, renaming)
         return renaming
 
     # --- kinds and names --------------------------------------------------------------------------------------

@@ -27,10 +27,34 @@ def run_to(found: Exploration, number: int, by: Transition | None = None) -> tup
     return tuple(run.steps)
 
 
-def in_original_names(found: Exploration, number: int, text: str) -> str:
-    """Return a text about a visited configuration in the names of the unreduced run to it."""
+def original_step(taken: Transition, renaming: Renaming, allowed: Iterable[Transition]) -> Transition:
+    """Return the step, among those allowed in a configuration, that corresponds to a step of its representative.
+
+    Args:
+        taken: The step of the representative.
+        renaming: The renaming from the configuration to its representative.
+        allowed: The steps of the configuration.
+    """
+    back = renaming.inverse
+    target, label = back.configuration(taken.target), back.text(str(taken.label))
+    agent = None if taken.label.agent is None else back.name(taken.label.agent)
+    alike = [
+        each
+        for each in allowed
+        if each.target == target and (each.label.rule, each.label.agent) == (taken.label.rule, agent)
+    ]
+    return next((each for each in alike if str(each.label) == label), alike[0])
+
+
+def in_original_names(found: Exploration, number: int, text: str, by: Transition | None = None) -> str:
+    """Return a text about a visited configuration in the names of the unreduced run to it.
+
+    With times, `by` is the last step of the run that is shown, if it is taken.
+    """
     if found.reducer is None or found.reducer.symmetry is None:
         return text
+    if found.times is not None:
+        return found.times.in_original_names(number, by, text)
     return _run_to(found, number).renaming.inverse.text(text)
 
 
@@ -98,15 +122,7 @@ class _Run:
         """Return the step of the unreduced run that corresponds to a step of the representative."""
         if self.reducer.symmetry is None:
             return taken
-        back = self.renaming.inverse
-        target, label = back.configuration(taken.target), back.text(str(taken.label))
-        agent = None if taken.label.agent is None else back.name(taken.label.agent)
-        alike = [
-            each
-            for each in expand(self.real).transitions
-            if each.target == target and (each.label.rule, each.label.agent) == (taken.label.rule, agent)
-        ]
-        return next((each for each in alike if str(each.label) == label), alike[0])
+        return original_step(taken, self.renaming, expand(self.real).transitions)
 
 
 def _run_to(found: Exploration, number: int) -> _Run:

@@ -110,7 +110,8 @@ class Reduced:
         Raises:
             Drift: An assumption fails; a bug of ours.
         """
-        from checker.reduction.footprint_check import crosscheck, exchange  # noqa: PLC0415  # for --paranoid only
+        from checker.reduction.exchange_check import exchange  # noqa: PLC0415  # for --paranoid only
+        from checker.reduction.footprint_check import crosscheck  # noqa: PLC0415  # the same
 
         if self.ample is not None:
             crosscheck(self.ample, c)

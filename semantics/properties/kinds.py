@@ -160,20 +160,20 @@ ABOUT: Final = {
         "A proposition becomes true in time on every run.",
         RequestMode.OF_TIMES,
         CONFIGURATIONS,
-        reducible=False,
+        reducible=True,
         counted=False,
     ),
     PropertyKind.ENDURANCE: About(
         "No vehicle is ever away from its place of restoration for longer than it lasts.",
         RequestMode.OF_TIMED_MISSIONS,
         CONFIGURATIONS,
-        reducible=False,
+        reducible=True,
     ),
     PropertyKind.TIME: About(
         "When a proposition first becomes true: the earliest and the latest moment.",
         RequestMode.OF_TIMES,
         CONFIGURATIONS,
-        reducible=False,
+        reducible=True,
         counted=False,
     ),
 }

@@ -10,11 +10,12 @@ from semantics.behaviours.values import show
 from semantics.environment import Appears, Drifts, Drops, Leaves, Says, Vanishes
 from semantics.state.requests import CTR, FLY, MGR, OBS, SND
 from semantics.state.setting import Setting
+from semantics.state.signature import Name
 from semantics.timing.actor_clocks import ActorClock, Sort, is_taken_up, word_of
 from semantics.timing.clocks import TimedStep, TimedView
 from semantics.timing.flight_history import travelling
 from semantics.timing.intervals import ANY_TIME, Interval
-from semantics.timing.timing import ONE_HOST, Every, Sayable, Window
+from semantics.timing.timing import ONE_HOST, Every, Sayable, Timing, Window
 
 T = TypeVar("T")
 
@@ -73,12 +74,19 @@ def _timed_clause(situation: TimedView, step: TimedStep) -> Timed:
 
 def bound_of(situation: TimedView, step: TimedStep) -> WrittenBound:
     """Return the line of the mission's text that bounds a step's duration."""
-    begins = tuple(_beginnings(situation, step))
+    return _written(situation.timing, _beginnings(situation, step))
+
+
+def bound_of_flight(setting: Setting, vehicles: Iterable[Name]) -> WrittenBound:
+    """Return the line of the mission's text that bounds a flight of some vehicles."""
+    assert setting.timing is not None
+    return _written(setting.timing, (each for name in vehicles for each in flight_beginnings(setting, name)))
+
+
+def _written(timing: Timing, beginnings: Iterable[str]) -> WrittenBound:
+    """Return the first line with one of these beginnings, the first ones preferred."""
     found = (
-        WrittenBound(*said)
-        for begin in begins
-        for said in situation.timing.lines
-        if said[0].startswith(begin)
+        WrittenBound(*said) for begin in beginnings for said in timing.lines if said[0].startswith(begin)
     )
     return next(found, WrittenBound())
 

@@ -12,6 +12,7 @@ from checker.properties.inspections import InTime
 from semantics.environment import Says
 from semantics.properties.propositions import Proposition
 from semantics.state.configuration import Configuration, Transition
+from semantics.state.requests import FLY
 from semantics.state.signature import Name
 from semantics.successors import Expansion
 from semantics.timing.clocks import TimedView
@@ -80,6 +81,27 @@ class TimelockRun:
     steps: int
 
 
+@dataclass(frozen=True, slots=True)
+class VehicleFlight:
+    """The flight of one vehicle.
+
+    Attributes:
+        request: Its request.
+        travelling: The vehicles that travel by this request.
+        vehicle: The vehicle.
+        agent: The requesting agent.
+        origin: The place in which L has the vehicle at the start.
+        destination: The place in which the flight ends.
+    """
+
+    request: FLY
+    travelling: tuple[Name, ...]
+    vehicle: Name
+    agent: Name
+    origin: Name
+    destination: Name
+
+
 class Times(Protocol):
     """The answers of an engine about time.
 
@@ -126,8 +148,20 @@ class Times(Protocol):
     def where(self, formula: Proposition) -> Sequence[bool]:
         """Return for each configuration whether a proposition is true there."""
 
-    def way_to(self, run: TimedRun, is_end: Callable[[Configuration], bool]) -> tuple[Transition, ...]:
-        """Return the shortest in-turn steps from the end of a run to a configuration, empty if none lead there."""
+    def way_to(
+        self, run: TimedRun, is_end: Callable[[Configuration, Name], bool], about: Name = ""
+    ) -> tuple[Transition, ...]:
+        """Return the shortest in-turn steps from the end of a run to a configuration, empty if none lead there.
+
+        `is_end` gets a configuration, and the name there of the entity that is called `about` at the end of the run:
+        representatives have other names. An empty name stands for none.
+        """
+
+    def in_original_names(self, place: int, by: Transition | None, text: str) -> str:
+        """Return a text about a configuration in the names of the run to it that `run_before` returns."""
+
+    def alike(self, flight: VehicleFlight) -> Iterable[VehicleFlight]:
+        """Return the flights that have the same dates as one, itself included: exchanges of names map it to them."""
 
     def unbounded(self) -> Set[str]:
         """Return the rules of agents' in-turn steps that have no upper time bound."""

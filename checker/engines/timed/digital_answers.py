@@ -5,10 +5,18 @@ from __future__ import annotations
 import math
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Sequence, Set
-from functools import cached_property
+from functools import cached_property, reduce
 from itertools import combinations
 
-from checker.engines.timed.answers import NO_SPAN, DateSpan, FirstMoments, TakenStep, TimelockRun, WaitAnswer
+from checker.engines.timed.answers import (
+    NO_SPAN,
+    DateSpan,
+    FirstMoments,
+    TakenStep,
+    TimelockRun,
+    VehicleFlight,
+    WaitAnswer,
+)
 from checker.engines.timed.digital_graph import Timeline
 from checker.engines.timed.first_runs import DELAY, TimedRun, dated, first_run
 from checker.properties.critical_path import way_to
@@ -96,6 +104,14 @@ class DigitalAnswers:
             number = self.timeline.passages[number, at][0]
         return tuple(found)
 
+    def in_original_names(self, place: int, by: Transition | None, text: str) -> str:  # noqa: ARG002 - as the protocol
+        """Return a text about a configuration as it is: nothing is exchanged."""
+        return text
+
+    def alike(self, flight: VehicleFlight) -> tuple[VehicleFlight, ...]:
+        """Return the flight: nothing is exchanged."""
+        return (flight,)
+
     def _first(self, is_end: object) -> TimedRun:
         run = first_run(0, self.edges.__getitem__, is_end)  # type: ignore[arg-type]
         assert run is not None
@@ -105,19 +121,29 @@ class DigitalAnswers:
         """Return for each configuration whether a proposition is true there."""
         return [holds(formula, each.c) for each in self.situations]
 
-    def way_to(self, run: TimedRun, is_end: Callable[[Configuration], bool]) -> tuple[Transition, ...]:
+    def way_to(
+        self, run: TimedRun, is_end: Callable[[Configuration, Name], bool], about: Name = ""
+    ) -> tuple[Transition, ...]:
         """Return the shortest in-turn steps from the end of a run to a configuration, empty if none lead there."""
         timeline, reached = self.timeline, set(self.timeline.order)
 
-        def follow(number: int) -> Iterator[tuple[Transition, int]]:
+        def follow(node: tuple[int, Name]) -> Iterator[tuple[Transition, tuple[int, Name]]]:
+            number, name = node
             for step in timeline.situations[number].steps:
-                target = timeline.numbers.get(step.transition.target)
+                c, later = self._shown(step.transition.target, name)
+                target = timeline.numbers.get(c)
                 if step.in_turn and target in reached:
-                    yield step.transition, target
+                    yield step.transition, (target, later)
 
-        done = self.transitions(run)
-        start = timeline.numbers[done[-1].target] if done else 0
-        return way_to(start, lambda number: is_end(timeline.situations[number].c), follow)
+        start = reduce(lambda at, step: timeline.passages[at, step][0], run.steps, 0)
+        return way_to((start, about), lambda node: is_end(timeline.situations[node[0]].c, node[1]), follow)
+
+    def _shown(self, c: Configuration, name: Name) -> tuple[Configuration, Name]:
+        """Return the representative of a configuration, with an entity's name there."""
+        if self.timeline.exchange is None:
+            return c, name
+        renaming, shown = self.timeline.exchange.symmetry.sorting(c)
+        return shown, renaming.name(name)
 
     def unbounded(self) -> set[str]:
         """Return the rules of agents' in-turn steps that have no upper time bound."""

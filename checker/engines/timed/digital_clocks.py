@@ -10,13 +10,15 @@ import time
 from collections import Counter
 from collections.abc import Iterable
 
-from checker.engines.contract import Exploration, Inspect, Options, Progress
+from checker.engines.contract import Exploration, Inspect, Options, Progress, sample
 from checker.engines.reference import crowded
 from checker.engines.timed.answers import shown_in_time, shown_to
 from checker.engines.timed.digital_answers import DigitalAnswers
 from checker.engines.timed.digital_graph import Timeline
+from checker.engines.timed.exchanged_clocks import ClockExchange
 from checker.engines.timed.first_runs import DELAY, layers
-from checker.limits import Stop, is_full
+from checker.engines.timed.original_times import OriginalTimes
+from checker.limits import Stop, is_full, look
 from semantics.state.configuration import Configuration
 
 
@@ -24,17 +26,22 @@ def explore_in_ticks(initial: Configuration, inspect: Iterable[Inspect], options
     """Visit the configurations that are reachable in time, then show each to the inspections."""
     started = time.monotonic()
     found = Exploration([], [])
-    timeline = Timeline(initial)
+    symmetry = None if options.reduce is None else options.reduce.symmetry
+    exchange = None if symmetry is None else ClockExchange(symmetry)
+    timeline = Timeline(initial, exchange)
     while True:
         _visit_all(timeline, found, options, started)
         if not timeline.grown or found.bounds:
             break
         timeline.begin()  # a constant is larger than assumed: clocks are counted further
-    found.times = _summarise(timeline, found)
+    found.times = times = _summarise(timeline, found)
     for place in range(len(timeline.order)):
         for inspection in inspect:
-            for c, steps in shown_in_time(found.times, place, shown_to(inspection)):
+            for c, steps in shown_in_time(times, place, shown_to(inspection)):
                 inspection(place, c, steps)
+    if exchange is not None:
+        found.times, found.reducer, found.start = OriginalTimes(times, exchange), options.reduce, initial
+        _doubt(timeline, options)
     found.seconds = time.monotonic() - started
     return found
 
@@ -64,6 +71,18 @@ def _visit_all(timeline: Timeline, found: Exploration, options: Options, started
             found.bounds += [] if bound in found.bounds else [bound]
         else:
             timeline.expand(index)
+
+
+def _doubt(timeline: Timeline, options: Options) -> None:
+    """Check the reductions' assumptions on some configurations (`--paranoid`).
+
+    Raises:
+        Drift: An assumption fails; a bug of ours.
+    """
+    for place in sample(len(timeline.order), options.keeping.doubted):
+        look()
+        if options.reduce is not None:
+            options.reduce.hold(timeline.situations[timeline.order[place]].c)
 
 
 def _progress(timeline: Timeline, count: int, seconds: float) -> Progress:

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections import deque
 
+from checker.engines.timed.exchanged_clocks import ClockExchange, ExchangedUpdate
 from checker.engines.timed.first_runs import DELAY, RunEdge
 from semantics.state.configuration import Configuration
 from semantics.timing.actor_clocks import ActorClock, Sort
@@ -24,13 +25,15 @@ class Timeline:
         edges: The edges of each state; empty before its expansion.
         order: The numbers of the reached configurations, in the order of their first runs (`first_run`).
         taken: The steps that are taken at some time, as pairs of a configuration's number and a step's.
+        exchange: The exchanges under which representatives replace configurations; None for none.
     """
 
-    def __init__(self, initial: Configuration) -> None:
+    def __init__(self, initial: Configuration, exchange: ClockExchange | None = None) -> None:
         self.initial = initial
+        self.exchange = exchange
         self.numbers: dict[Configuration, int] = {}
         self.situations: list[TimedView] = []
-        self.passages: dict[tuple[int, int], tuple[int, ClockUpdate]] = {}
+        self.passages: dict[tuple[int, int], tuple[int, ClockUpdate | ExchangedUpdate]] = {}
         self.constants: dict[ActorClock, int] = {}
         self.caps: list[tuple[int, ...]] = []
         self.order: list[int] = []
@@ -55,7 +58,8 @@ class Timeline:
             number = self.numbers[c] = len(self.situations)
             situation = TimedView(c)
             self.situations.append(situation)
-            for clock, constant in zip(situation.clocks, situation.constants, strict=True):
+            for running, constant in zip(situation.clocks, situation.constants, strict=True):
+                clock = self._kin(running)
                 before = self.constants.get(clock)
                 self.constants[clock] = max(before or 0, constant)
                 self.grown = self.grown or (before is not None and constant > before)
@@ -63,7 +67,12 @@ class Timeline:
         return number
 
     def _caps(self, situation: TimedView) -> tuple[int, ...]:
-        return tuple(0 if each.sort is Sort.WINDOW else self.constants[each] for each in situation.clocks)
+        return tuple(
+            0 if each.sort is Sort.WINDOW else self.constants[self._kin(each)] for each in situation.clocks
+        )
+
+    def _kin(self, clock: ActorClock) -> ActorClock:
+        return clock if self.exchange is None else self.exchange.kin(clock)
 
     def reach(self, number: int, ages: tuple[int, ...]) -> int:
         """Return the index of a state, a new one at the first visit."""
@@ -89,14 +98,22 @@ class Timeline:
             found.append(RunEdge(DELAY, self.reach(number, older(ages, self.caps[number]))))
         self.edges[index] = tuple(found)
 
-    def passage(self, number: int, at: int, step: TimedStep) -> tuple[int, ClockUpdate]:
+    def passage(self, number: int, at: int, step: TimedStep) -> tuple[int, ClockUpdate | ExchangedUpdate]:
         """Return the target of a step, and its effect on the clocks."""
         known = self.passages.get((number, at))
         if known is None:
-            target = self.number(step.transition.target)
-            known = target, ClockUpdate(self.situations[number], step, self.situations[target])
-            self.passages[number, at] = known
+            known = self.passages[number, at] = self._follow(number, step)
         return known
+
+    def _follow(self, number: int, step: TimedStep) -> tuple[int, ClockUpdate | ExchangedUpdate]:
+        c = step.transition.target
+        if self.exchange is None:
+            target = self.number(c)
+            return target, ClockUpdate(self.situations[number], step, self.situations[target])
+        renaming, shown = self.exchange.symmetry.sorting(c)
+        target, reached = self.number(shown), TimedView(c)
+        order = self.exchange.order(reached.clocks, renaming, self.situations[target].clocks)
+        return target, ExchangedUpdate(ClockUpdate(self.situations[number], step, reached), order)
 
     # --- queries
 

@@ -11,7 +11,14 @@ from numpy.typing import NDArray
 
 from checker.engines.fast.row_inspection import truths
 from checker.engines.made_on_access import MadeOnAccess
-from checker.engines.timed.answers import DateSpan, FirstMoments, TakenStep, TimelockRun, WaitAnswer
+from checker.engines.timed.answers import (
+    DateSpan,
+    FirstMoments,
+    TakenStep,
+    TimelockRun,
+    VehicleFlight,
+    WaitAnswer,
+)
 from checker.engines.timed.digital_answers import control_pairs
 from checker.engines.timed.first_runs import TimedRun
 from checker.engines.zones.difference_bounds import MOST, NONE
@@ -240,16 +247,39 @@ class ZoneTimes:
 
     # --- runs
 
-    def way_to(self, run: TimedRun, is_end: Callable[[Configuration], bool]) -> tuple[Transition, ...]:
+    def way_to(
+        self, run: TimedRun, is_end: Callable[[Configuration, Name], bool], about: Name = ""
+    ) -> tuple[Transition, ...]:
         """Return the shortest in-turn steps from the end of a run to a configuration, empty if none lead there."""
 
-        def follow(row: int) -> Iterator[tuple[tuple[int, int], int]]:
+        def follow(node: tuple[int, Name]) -> Iterator[tuple[tuple[int, int], tuple[int, Name]]]:
+            row, name = node
             targets = self._targets(row).items()
-            return (((row, step), target) for step, target in targets if self.search.ranks.room[target] >= 0)
+            return (
+                ((row, step), (target, self._name_after(row, step, name)))
+                for step, target in targets
+                if self.search.ranks.room[target] >= 0
+            )
 
         row = reduce(lambda at, step: self._targets(at)[step], run.steps, 0)
-        way = way_to(row, lambda at: is_end(self.network.configuration(at)), follow)
+        way = way_to((row, about), lambda node: is_end(self.network.configuration(node[0]), node[1]), follow)
         return tuple(self.network.situation(at).steps[step].transition for at, step in way)
+
+    def _name_after(self, row: int, step: int, name: Name) -> Name:
+        """Return the name that an entity of a row has after a step."""
+        exchange = self.network.exchange
+        if exchange is None or not name:
+            return name
+        target = self.network.situation(row).steps[step].transition.target
+        return exchange.symmetry.sorting(target)[0].name(name)
+
+    def in_original_names(self, place: int, by: Transition | None, text: str) -> str:  # noqa: ARG002 - as the protocol
+        """Return a text about a configuration as it is: nothing is exchanged."""
+        return text
+
+    def alike(self, flight: VehicleFlight) -> tuple[VehicleFlight, ...]:
+        """Return the flight: nothing is exchanged."""
+        return (flight,)
 
     def _targets(self, row: int) -> dict[int, int]:
         """Return the target row of each in-turn step, from the reached locations of a row."""
@@ -407,7 +437,7 @@ class ZoneTimes:
                 return True
             stays = history[at + 1][0] - now
             left = [
-                self.network.caps[each] - age
+                self.network.caps[self.network.kin(each)] - age
                 for each, age in zip(self.network.clocks(location), measured, strict=True)
             ]
             if stays > max(left, default=0) and stays > 0:

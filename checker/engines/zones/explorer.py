@@ -7,6 +7,7 @@ from collections import Counter
 from collections.abc import Iterable
 from dataclasses import replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -14,6 +15,8 @@ from checker.engines.contract import Exploration, Inspect, Options, Progress, Ti
 from checker.engines.fast.compile_progress import compilation_uncounted
 from checker.engines.fast.expander import Expander
 from checker.engines.made_on_access import MadeOnAccess
+from checker.engines.timed.exchanged_clocks import ClockExchange
+from checker.engines.timed.original_times import OriginalTimes
 from checker.engines.timed.zone_answers import ZoneTimes
 from checker.engines.zones.timed_automaton import ConstantTooLargeError
 from checker.engines.zones.timed_automaton_of import Network
@@ -22,6 +25,9 @@ from checker.engines.zones.zone_inspection import inspect_zones
 from checker.engines.zones.zone_search import CHUNK, Search
 from checker.limits import Bound, BoundMet, Limits, Stop, bounded, is_full
 from semantics.state.configuration import Configuration
+
+if TYPE_CHECKING:
+    from checker.reduction.reducer import Reduced
 
 
 class _Files:
@@ -36,12 +42,15 @@ class _Files:
         folder = self.keeping.folder
         name = "monitored" if network.learner.setting.monitored else "exploration"
         self.path = None if folder is None else Path(folder) / f"{name}.timed.checkpoint"
+        self.digest = self.keeping.digest
+        if options.reduce is not None:  # it reaches other rows
+            self.digest += f", {options.reduce.identity}"
         self.seconds, self.kept = 0.0, time.monotonic()
 
     def begin(self) -> None:
         """Begin the search, or go on from the checkpoint."""
         if self.path is not None and self.keeping.resumed and self.path.exists():
-            self.seconds = resume(self.network, self.keeping.digest, self.path)
+            self.seconds = resume(self.network, self.digest, self.path)
         else:
             self.network.begin()
 
@@ -50,7 +59,7 @@ class _Files:
         if self.path is None or not (always or time.monotonic() - self.kept >= self.keeping.every):
             return []
         try:
-            save(self.network, seconds, self.keeping.digest, self.path)
+            save(self.network, seconds, self.digest, self.path)
         except OSError as error:
             return [Bound(Stop.NO_CHECKPOINT, (str(self.path), error.strerror))]
         self.kept = time.monotonic()
@@ -89,7 +98,7 @@ def explore_in_zones(initial: Configuration, inspect: Iterable[Inspect], options
     try:
         with compilation_uncounted(options) as counted:
             uncounted = counted.limits.uncounted
-            network = Network(initial, options.limits.pending)
+            network = Network(initial, options.limits.pending, _exchange(options))
             files = _Files(network, counted)
             files.begin()
             started -= files.seconds
@@ -98,7 +107,7 @@ def explore_in_zones(initial: Configuration, inspect: Iterable[Inspect], options
             try:
                 with bounded(within, started):
                     _visit_all(network, search, files, found, counted, started)
-                    _doubt(network, options.keeping.doubted)
+                    _doubt(network, options.keeping.doubted, options.reduce)
             except BoundMet as met:
                 found.bounds.append(met.bound)
             except OSError as error:  # files or memory have no room for growth
@@ -111,11 +120,19 @@ def explore_in_zones(initial: Configuration, inspect: Iterable[Inspect], options
         found.bounds.append(options.limits.bound(Stop.PENDING))
     _summarise(times, found)
     inspect_zones(times, inspect)
+    if network.exchange is not None:
+        found.times, found.reducer = OriginalTimes(times, network.exchange), options.reduce
+        found.start = initial
     found.seconds, found.compiling = time.monotonic() - started, uncounted.seconds
     return found
 
 
-def _doubt(network: Network, count: int) -> None:
+def _exchange(options: Options) -> ClockExchange | None:
+    symmetry = None if options.reduce is None else options.reduce.symmetry
+    return None if symmetry is None else ClockExchange(symmetry)
+
+
+def _doubt(network: Network, count: int, reduce: Reduced | None) -> None:
     """Compare the learned successors of some rows with the interpreter's.
 
     Raises:
@@ -128,7 +145,7 @@ def _doubt(network: Network, count: int) -> None:
         network.model.see()
         automaton = network.automaton
         rows = np.unique(automaton.rows.used[automaton.left()])
-        crosscheck(expander, rows[sample(len(rows), count)].tolist())
+        crosscheck(expander, rows[sample(len(rows), count)].tolist(), reduce)
 
 
 def _visit_all(

@@ -1,45 +1,47 @@
 """The compiled loops that unfold a mission: the automaton's locations and edges, from rows and learned trees.
 
-One walk through each actor's trees yields the steps of a row and their clocks. A location is a row with the states of
+A location is a row with the states of
 the windows' clocks, as digits of a number in base 3.
 """
 
 # mypy: disable-error-code="return-value, assignment, arg-type, no-any-return"
 # (numba infers the types of compiled functions; mypy takes its integers for Python's)
 
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from checker.engines.fast.decision_leaves import (
-    ALIKE,
-    CROWDED,
-    END,
-    FIRST,
-    FLAGS,
-    LEAF,
-    STEP,
-    TURN,
-)
+from checker.engines.fast.decision_leaves import ALIKE, END, FIRST, LEAF, STEP, TURN
 from checker.engines.fast.jit_decorators import inner, njit
 from checker.engines.fast.kernel import add_row
-from checker.engines.fast.learned_model import (
-    AT,
-    KEPT,
-    SIZE,
-    TREE,
-    WORDS,
-    LearnedModel,
-    code_at,
-    first_turn,
-    walk,
-)
+from checker.engines.fast.learned_model import AT, KEPT, NODE, SIZE, UNKNOWN, WORDS, LearnedModel
 from checker.engines.fast.make_successors import make_plain, put_stored
 from checker.engines.fast.table import Words, bits_for, entry_of, find, hashed
 from checker.engines.fast.tree_compression import FoldedTable, unfold
 from checker.engines.zones import timed_automaton as automata
+from checker.engines.zones.clock_images import UNNAMED, note_names
 from checker.engines.zones.difference_bounds import NONE
+from checker.engines.zones.location_views import (
+    ACTORS,
+    AGENTS,
+    ANSWER,
+    CHOICE,
+    CLOCK,
+    CLOCKS,
+    HI,
+    IS_CROWDED,
+    ITS_TURN,
+    RESTORING,
+    RUNNING,
+    STAMP,
+    TIMES,
+    WINDOW,
+    AutomatonGrowth,
+    LearnedClocks,
+    LocationView,
+    find_steps,
+)
 from checker.engines.zones.timed_automaton import DEADLINE, EDGE, LOCATION, TEST
 from semantics.timing.actor_clocks import BOUND
 from semantics.timing.actor_clocks import FREE as UNBOUND
@@ -47,84 +49,6 @@ from semantics.timing.actor_clocks import FREE as UNBOUND
 Ints = NDArray[np.int32]
 State = NDArray[np.int64]
 
-
-class LearnedClocks(NamedTuple):
-    """The learned clocks of actors, for the loops.
-
-    Attributes:
-        agents, clauses: The trees for the clocks of the actors of `LearnedModel`, in the same order.
-        vehicles: The trees for the clocks of vehicles with an endurance.
-        answers: For each leaf of those trees the ranges of its clocks and of its steps (`ANSWER` numbers).
-        running: Clocks with their bounds (`RUNNING`).
-        steps: For each step the ranges of the clocks that it ends and of its tests (`TIMES`).
-        done, tests: Those clocks; those tests, a disjunction (`TEST`).
-        served: For each clock whether it belongs to a request; there may be several of those.
-        lasting: The clocks that run everywhere.
-        restored: For each vehicle its clocks RESTORED and ALOFT, and the time that restoring takes (`RESTORING`).
-        windows: For each window its clause, and its end or `NONE` (`WINDOW`); its clock has the number -1 - window.
-    """
-
-    agents: Ints
-    clauses: Ints
-    vehicles: Ints
-    answers: Ints
-    running: Ints
-    steps: Ints
-    done: Ints
-    tests: Ints
-    served: Ints
-    lasting: Ints
-    restored: Ints
-    windows: Ints
-
-
-ANSWER, RUNNING, TIMES, RESTORING, WINDOW, CHOICE = 4, 3, 4, 3, 2, 3
-CLOCK, LO, HI = range(RUNNING)
-
-
-class AutomatonGrowth(NamedTuple):
-    """The growing automaton, with room, and additional data for each location.
-
-    Attributes:
-        rows, windows: The row of each location, and the states of the windows' clocks.
-        of_rows: For each row its last location, -1 for none.
-        before: For each location the previous one of the same row.
-    """
-
-    locations: Ints
-    edges: Ints
-    tests: Ints
-    sources: Ints
-    deadlines: Ints
-    clocks: Ints
-    rows: Ints
-    windows: State
-    of_rows: Ints
-    before: Ints
-
-
-class LocationView(NamedTuple):
-    """The steps and clocks of one row, as `find_steps` finds them.
-
-    Attributes:
-        leaves: For each actor its leaf: the agents' first, then the clauses'.
-        answers: For each vehicle and then for each actor the leaf with its clocks.
-        counts: The numbers of the agents' actors and of all actors, the turn, whether the row is crowded, the stamp of
-            the view, and the number of clocks.
-        at, many, stamps: For each clock its first index, its multiplicity, and the stamp of the view with this data.
-        bound: For each clock the stamp of the view in which an in-turn step ends it.
-    """
-
-    leaves: Ints
-    answers: Ints
-    counts: State
-    at: Ints
-    many: Ints
-    stamps: State
-    bound: State
-
-
-AGENTS, ACTORS, ITS_TURN, IS_CROWDED, STAMP, CLOCKS = range(6)
 
 LOCATED, LEAVING, TESTED, SOURCED, DEADLINED, CLOCKED, WIDEST, DONE = range(8)
 """The positions in the loops' state.
@@ -135,75 +59,6 @@ and the number of given locations that are done.
 
 KNOWN, MISS, FULL = range(3)
 """Why the loops return: all is done, a tree lacks an answer, or there is no room."""
-
-
-@inner(cache=True)
-def find_steps(
-    m: LearnedModel, t: LearnedClocks, words: Words, at: int, row: int, v: LocationView, state: State
-) -> bool:
-    """Find the steps and clocks of a row whose words begin at `at`; False if a tree lacks an answer."""
-    state[AT] = row
-    first, last = np.int64(0), np.int64(len(m.agents))
-    if m.alpha >= 0:
-        group = code_at(words, at, m.columns, m.alpha)
-        first, last = np.int64(m.agents_from[group]), np.int64(m.agents_from[group + 1])
-    agents, vehicles = last - first, len(t.vehicles)
-    actors = agents + len(m.clauses)
-    flags = np.int64(0)
-    for k in range(actors):
-        tree = m.agents[first + k] if k < agents else m.clauses[k - agents]
-        reference = walk(words, at, m.root[tree], m.nodes, m.next, state)
-        if reference == 0:
-            state[TREE] = tree
-            return False
-        v.leaves[k] = -reference - 1
-        flags |= m.leaves[LEAF * (-reference - 1) + FLAGS]
-    for k in range(vehicles + actors):
-        if k < vehicles:
-            tree = t.vehicles[k]
-        elif k < vehicles + agents:
-            tree = t.agents[first + k - vehicles]
-        else:
-            tree = t.clauses[k - vehicles - agents]
-        reference = walk(words, at, m.root[tree], m.nodes, m.next, state)
-        if reference == 0:
-            state[TREE] = tree
-            return False
-        v.answers[k] = -reference - 1
-    v.counts[AGENTS], v.counts[ACTORS] = agents, actors
-    v.counts[ITS_TURN] = first_turn(m.leaves, m.steps, v.leaves, agents) if m.takes_turns else -1
-    v.counts[IS_CROWDED] = flags & CROWDED
-    v.counts[STAMP] += 1
-    note_clocks(m, t, v)
-    return True
-
-
-@inner(cache=True)
-def note_clocks(m: LearnedModel, t: LearnedClocks, v: LocationView) -> None:
-    """Record the first index of each clock, and the bound clocks: those that an in-turn step ends."""
-    stamp, index = v.counts[STAMP], np.int64(1)
-    for clock in t.lasting:
-        v.at[clock], v.many[clock], v.stamps[clock] = index, 1, stamp
-        index += 1
-    vehicles = len(t.vehicles)
-    for k in range(vehicles + v.counts[ACTORS]):
-        record = ANSWER * v.answers[k]
-        for run in range(t.answers[record], t.answers[record + 1]):
-            clock = t.running[RUNNING * run + CLOCK]
-            if v.stamps[clock] != stamp:
-                v.at[clock], v.many[clock], v.stamps[clock] = index, 0, stamp
-            v.many[clock] += 1
-            index += 1
-    v.counts[CLOCKS] = index
-    for k in range(v.counts[ACTORS]):
-        leaf, record = LEAF * v.leaves[k], ANSWER * v.answers[vehicles + k]
-        for one in range(m.leaves[leaf + END] - m.leaves[leaf + FIRST]):
-            turn = m.steps[STEP * (m.leaves[leaf + FIRST] + one) + TURN]
-            if turn < 0 or turn == v.counts[ITS_TURN]:
-                times = TIMES * (t.answers[record + 2] + one)
-                for at in range(t.steps[times], t.steps[times + 1]):
-                    if t.done[at] >= 0:
-                        v.bound[t.done[at]] = stamp
 
 
 @inner(cache=True)
@@ -293,6 +148,8 @@ def add_deadlines(
 @inner(cache=True)
 def target_row(
     m: LearnedModel,
+    x: Any,
+    d: Any,
     f: FoldedTable | None,
     words: Words,
     source: Words,
@@ -306,16 +163,18 @@ def target_row(
     most: int,
     state: State,
 ) -> int:
-    """Return the row that a step leads to, new at the first visit; -1 if a tree lacks an answer, -2 without room.
+    """Return the row that a step leads to, new at the first visit; -1 if something is not learned yet, -2 without room.
 
-    Its words are then in `target`.
+    Its words are then in `target`. With symmetry (`x` and scratch space `d`), its representative is in `d.image`.
     """
     width, stored = state[WORDS], state[KEPT]
     if make_plain(m, f, source, at, step, target, 0, width, state) < 0:
         state[AT] = row
         return -1
-    if put_stored(m, None, None, f, target, 0, width, True, kept, 0, state) < 0:
-        return -2
+    there = put_stored(m, x, d, f, target, 0, width, True, kept, 0, state)
+    if there < 0:
+        state[AT] = row
+        return -1 if there == UNKNOWN else -2
     digest = hashed(kept, 0, stored)
     bits = np.uint32(bits_for(len(table)))
     found = find(words, table, kept, 0, digest, stored, bits)
@@ -343,21 +202,15 @@ def source_of(t: LearnedClocks, a: LocationView, done: int, end: int, clock: int
 
 
 @inner(cache=True)
-def add_edges(  # each argument is another part of the state
-    m: LearnedModel, t: LearnedClocks, g: AutomatonGrowth, a: LocationView, b: LocationView,
-    here: int, row: int, times: int, number: int, step: int,
-    choices: Ints, s: State,
-) -> int:  # fmt: skip
-    """Add the edges of a step to a row that was looked at, one for each combination of tests and choices.
-
-    One choice for each vehicle that leaves its restoring place: whether its endurance was restored in full. One choice
-    for each window that becomes bound: whether it is already over.
-    """
-    done, end = t.steps[times], t.steps[times + 1]
-    count, said = np.int64(0), np.int64(0)
+def choices_of_vehicles(t: LearnedClocks, n: Any, a: LocationView, b: LocationView, choices: Ints) -> int:
+    """Note a choice for each vehicle that leaves its restoring place; return their number."""
+    count = np.int64(0)
     for vehicle in range(len(t.restored) // RESTORING):
         restored, aloft = t.restored[RESTORING * vehicle], t.restored[RESTORING * vehicle + 1]
-        if a.stamps[restored] == a.counts[STAMP] and b.stamps[restored] != b.counts[STAMP]:
+        later = np.int64(restored)
+        if n is not None:
+            later = np.int64(n.restored[vehicle])
+        if a.stamps[restored] == a.counts[STAMP] and b.stamps[later] != b.counts[STAMP]:
             at = CHOICE * count
             choices[at], choices[at + 1], choices[at + 2] = (
                 a.at[restored],
@@ -365,18 +218,38 @@ def add_edges(  # each argument is another part of the state
                 aloft,
             )
             count += 1
+    return count
+
+
+@inner(cache=True)
+def add_edges(  # each argument is another part of the state
+    m: LearnedModel, t: LearnedClocks, n: Any, g: AutomatonGrowth, a: LocationView, b: LocationView,
+    here: int, row: int, times: int, number: int, step: int,
+    choices: Ints, s: State,
+) -> int:  # fmt: skip
+    """Add the edges of a step to a row that was looked at, one for each combination of tests and choices.
+
+    One choice for each vehicle that leaves its restoring place: whether its endurance was restored in full. One choice
+    for each window that becomes bound: whether it is already over. With symmetry, `n` has the names that the target had
+    before its representative replaced it.
+    """
+    done, end = t.steps[times], t.steps[times + 1]
+    count, said = np.int64(choices_of_vehicles(t, n, a, b, choices)), np.int64(0)
     for window in range(len(t.windows) // WINDOW):
         value, within = digit(g.windows[here], window), t.windows[WINDOW * window + 1]
         for k in range(done, end):
             if t.done[k] == -1 - window:
                 value = UNBOUND
-        if value == 0 and steps_of_clause(m, b, t.windows[WINDOW * window]) > 0:
+        after = np.int64(window)
+        if n is not None:
+            after = np.int64(n.windows[window])
+        if value == 0 and steps_of_clause(m, b, t.windows[WINDOW * after]) > 0:
             value = BOUND
             if within >= 0:
                 at = CHOICE * count
-                choices[at], choices[at + 1], choices[at + 2] = 1, within, -1 - window
+                choices[at], choices[at + 1], choices[at + 2] = 1, within, -1 - after
                 count += 1
-        said += value * 3**window
+        said += value * 3**after
     begin, last = t.steps[times + 2], t.steps[times + 3]
     for test in range(begin, max(last, begin + 1)):
         clock, least, most = np.int64(NONE), np.int64(0), np.int64(NONE)
@@ -411,7 +284,7 @@ def add_edges(  # each argument is another part of the state
             g.edges[at + automata.TESTS], g.edges[at + automata.TESTS_END] = fresh, s[TESTED]
             g.edges[at + automata.SOURCES], g.edges[at + automata.LEARNED] = s[SOURCED], step
             g.edges[at + automata.FIRST] = NONE
-            add_sources(t, g, a, b, done, end, target, choices, count, chosen, s)
+            add_sources(t, n, g, a, b, done, end, target, choices, count, chosen, s)
             s[LEAVING] += 1
     return KNOWN
 
@@ -432,15 +305,18 @@ def put(tests: Ints, s: State, clock: int, least: int, most: int) -> None:
 
 @inner(cache=True)
 def add_sources(
-    t: LearnedClocks, g: AutomatonGrowth, a: LocationView, b: LocationView, done: int, end: int,
+    t: LearnedClocks, n: Any, g: AutomatonGrowth, a: LocationView, b: LocationView, done: int, end: int,
     target: int, choices: Ints, count: int, chosen: int,
     s: State,
 ) -> None:  # fmt: skip
     """Add for each clock of the target the source clock that continues in it."""
     clocks = g.locations[LOCATION * target + automata.CLOCKS]
     for index in range(1, b.counts[CLOCKS]):
-        clock = g.clocks[clocks + index - 1]
-        source = source_of(t, a, done, end, clock, index - b.at[clock])
+        clock = np.int64(g.clocks[clocks + index - 1])
+        earlier = index - b.at[clock]
+        if n is not None:
+            clock = np.int64(n.clocks[clock])
+        source = source_of(t, a, done, end, clock, earlier)
         for k in range(count):
             if choices[CHOICE * k + 2] == clock and is_second(chosen, count, k):
                 source = 0
@@ -473,10 +349,14 @@ def begin(
 @njit(cache=True)
 def leave(
     m: LearnedModel, t: LearnedClocks, g: AutomatonGrowth, a: LocationView, b: LocationView,
-    words: Words, f: FoldedTable | None, origins: Any, table: Any, most: int,
+    x: Any, d: Any, i: Any, n: Any, words: Words, f: FoldedTable | None, origins: Any, table: Any, most: int,
     target: Words, kept: Words, taken: Ints, choices: Ints, locations: State, state: State, s: State,
 ) -> int:  # fmt: skip
-    """Add the edges of the given locations, from the next undone one; return why that ended."""
+    """Add the edges of the given locations, from the next undone one; return why that ended.
+
+    With symmetry, representatives replace targets: `x` and `d` are the tables and scratch space of `canonicalise`, `i`
+    and `n` those of `clock_images`.
+    """
     while s[DONE] < len(locations):
         here = locations[s[DONE]]
         row, began = np.int64(g.rows[here]), (s[LEAVING], s[TESTED], s[SOURCED])
@@ -489,8 +369,8 @@ def leave(
         why = KNOWN
         if not a.counts[IS_CROWDED]:
             why = leave_by_steps(
-                m, t, g, a, b, words, source, at, f, origins, table, most, target, kept, taken, choices, here, row,
-                state, s,
+                m, t, g, a, b, x, d, i, n, words, source, at, f, origins, table, most, target, kept, taken, choices,
+                here, row, state, s,
             )  # fmt: skip
         if why != KNOWN:
             s[LEAVING], s[TESTED], s[SOURCED] = began
@@ -502,8 +382,29 @@ def leave(
 
 
 @inner(cache=True)
+def is_target(
+    m: LearnedModel,
+    f: FoldedTable | None,
+    source: Words,
+    at: int,
+    step: int,
+    target: Words,
+    scratch: Words,
+    state: State,
+) -> bool:
+    """Return whether a step leads to the row in `target`, before its representative replaces it."""
+    width = state[WORDS]
+    make_plain(m, f, source, at, step, scratch, 0, width, state)
+    same = True
+    for word in range(width):
+        same = same and scratch[word] == target[word]
+    return same
+
+
+@inner(cache=True)
 def leave_by_steps(
     m: LearnedModel, t: LearnedClocks, g: AutomatonGrowth, a: LocationView, b: LocationView,
+    x: Any, d: Any, i: Any, n: Any,
     words: Words, source: Words, at: int, f: FoldedTable | None, origins: Any, table: Any, most: int,
     target: Words, kept: Words, taken: Ints, choices: Ints, here: int, row: int, state: State, s: State,
 ) -> int:  # fmt: skip
@@ -516,21 +417,34 @@ def leave_by_steps(
             turn, alike = m.steps[STEP * step + TURN], m.steps[STEP * step + ALIKE]
             if turn >= 0 and turn != a.counts[ITS_TURN]:
                 continue
-            to = target_row(m, f, words, source, at, row, step, target, kept, origins, table, most, state)
+            to = target_row(
+                m, x, d, f, words, source, at, row, step, target, kept, origins, table, most, state
+            )
             if to < 0:
                 return MISS if to == -1 else FULL
             if to >= len(g.of_rows) or 2 * number + 2 > len(taken):
                 return FULL
             again = False
             for other in range(own, number if k < a.counts[AGENTS] and alike >= 0 else own):
-                again = again or (taken[2 * other] == to and taken[2 * other + 1] == alike)
+                earlier = taken[2 * other + 1]
+                if taken[2 * other] == to and m.steps[STEP * earlier + ALIKE] == alike:
+                    same = True
+                    if x is not None:  # targets that are exchanged are different ones
+                        same = is_target(m, f, source, at, earlier, target, kept, state)
+                    again = again or same
             if again:
                 continue
-            taken[2 * number], taken[2 * number + 1] = to, alike
-            if not find_steps(m, t, target, 0, to, b, state):
+            taken[2 * number], taken[2 * number + 1] = to, step
+            reached = target
+            if x is not None:
+                reached = d.image
+            if not find_steps(m, t, reached, 0, to, b, state):
+                return MISS
+            if x is not None and not note_names(t, i, n, d.place, b):
+                state[NODE] = UNNAMED
                 return MISS
             times = TIMES * (t.answers[record + 2] + step - first)
-            if add_edges(m, t, g, a, b, here, to, times, number, step, choices, s) == FULL:
+            if add_edges(m, t, n, g, a, b, here, to, times, number, step, choices, s) == FULL:
                 return FULL
             number += 1
     return KNOWN

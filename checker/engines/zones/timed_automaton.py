@@ -108,10 +108,14 @@ class TimedAutomaton:
         self.lower.append(lower)
         return self.upper.append(upper)
 
+    def constants(self, clock: int) -> tuple[int, int]:
+        """Return a clock's largest constants, of its lower and of its upper bounds."""
+        return int(self.lower.room[clock]), int(self.upper.room[clock])
+
     def compare(self, clock: int, lower: int, upper: int) -> bool:
         """Raise a clock's constants to at least these; return whether one of them grew."""
         _look(lower, upper)
-        before = int(self.lower.room[clock]), int(self.upper.room[clock])
+        before = self.constants(clock)
         after = max(before[0], lower), max(before[1], upper)
         self.lower.room[clock], self.upper.room[clock] = after
         return after != before

@@ -18,18 +18,23 @@ from numpy.typing import NDArray
 
 from checker.engines.fast.arrays import Growing
 from checker.engines.fast.decision_leaves import LEAF
-from checker.engines.fast.learned_model import AT, LIMIT
+from checker.engines.fast.learned_model import LIMIT, NODE
 from checker.engines.fast.learner import Learner
 from checker.engines.fast.origins import OriginPages
 from checker.engines.fast.row_store import RowFormat, RowStore
 from checker.engines.fast.rule_model import RuleModel
 from checker.engines.fast.table import most_in
 from checker.engines.fast.value_templates import settled
-from checker.engines.zones import location_successors
+from checker.engines.timed.exchanged_clocks import ClockExchange
+from checker.engines.zones import location_successors, location_views
+from checker.engines.zones.clock_images import UNNAMED
 from checker.engines.zones.difference_bounds import NONE
-from checker.engines.zones.location_successors import (
+from checker.engines.zones.learned_images import LearnedImages, tables_of
+from checker.engines.zones.location_views import (
     ANSWER,
     CHOICE,
+    RUNNING,
+    TIMES,
     AutomatonGrowth,
     LearnedClocks,
     LocationView,
@@ -91,13 +96,18 @@ class Network:
         caps: The value of each clock beyond which no test distinguishes values.
         outgrown: Whether the constant of a clock has grown.
         first_ages: The clock values of the first location.
+        exchange: The exchanges under which representatives replace rows; None for none.
+        keys: The clock of each number, with its aim.
     """
 
-    def __init__(self, initial: Configuration, pending: int) -> None:
+    def __init__(self, initial: Configuration, pending: int, exchange: ClockExchange | None = None) -> None:
         self.initial = initial
+        self.exchange = exchange
         self.timing = timing_of(initial)
         self.automaton = TimedAutomaton()
         self.numbers: dict[tuple[ActorClock, Hashable], int] = {}
+        self.keys: list[tuple[ActorClock, Hashable]] = []
+        self.families: dict[Hashable, list[int]] = {}
         self.clocks_of: list[ActorClock] = []
         self.caps: dict[ActorClock, int] = {}
         self.outgrown = False
@@ -112,7 +122,7 @@ class Network:
         self.said = Growing(np.int64)
         self.noted = 0
         self.counts_of = np.zeros(location_successors.DONE + 1, np.int64)
-        self.lasting = {each.clock: self._number(each) for each in lasting(self.timing)}
+        self.lasting = {each.clock: self.number(each) for each in lasting(self.timing)}
         self.restored = [self._restoring(vehicle) for vehicle, _ in self.timing.endurances]
         self.questions: dict[tuple[object, Name | int], int] = {}
         self.timed: LearnedClocks
@@ -120,7 +130,9 @@ class Network:
         self.store = RowStore(
             form=RowFormat(OriginPages)
         )  # rows are reached in the order of the timed search
-        self.model = RuleModel(self.learner, self.store)
+        self.learned_images = None if exchange is None else LearnedImages(self, exchange)
+        tables = None if exchange is None else tables_of(self.learner, exchange)
+        self.model = RuleModel(self.learner, self.store, tables)
         self.model.followers.append(self._see)
         self.model.see()
         self.situation = lru_cache(1 << 12)(lambda number: TimedView(self.configuration(number)))
@@ -179,7 +191,14 @@ class Network:
             for a in group
         ]
         clauses = [self._question(of_clause, number) for number in range(len(self.model.clauses))]
+        self.asked = (agents, clauses, vehicles)
         self._note_answers()
+        self._see_clocks()
+
+    def _see_clocks(self) -> None:
+        """Update the loops' view of the learned clocks."""
+        if self.learned_images is not None:
+            self.learned_images.see()
         windows = [
             each
             for number in self.windows
@@ -187,13 +206,12 @@ class Network:
             if isinstance(step, Window)
             for each in (number, NONE if step.within is None else step.within)
         ]
-        numbers = (agents, clauses, vehicles)
         arrays = (self.answers, self.running, self.times, self.done, self.tested, self.served)
         lasting = [number for number in self.lasting.values() if number >= 0]
         always = (lasting, [each for several in self.restored for each in several], windows)
         self.timed = LearnedClocks._make(
             (
-                *(np.array(each, np.int32) for each in numbers),
+                *(np.array(each, np.int32) for each in self.asked),
                 *(each.room for each in arrays),
                 *(np.array(each, np.int32) for each in always),
             )
@@ -221,13 +239,13 @@ class Network:
     def _record(self, answer: ActorClocks) -> list[int]:
         """Record the clocks of an actor; return the ranges of its clocks and its steps."""
         numbers = dict(self.lasting)
-        run = len(self.running) // location_successors.RUNNING
+        run = len(self.running) // RUNNING
         for each in answer.running:
-            number = numbers[each.clock] = self._number(each)
+            number = numbers[each.clock] = self.number(each)
             self.running.append(
                 number, each.interval.lo, NONE if each.interval.hi is None else each.interval.hi
             )
-        step = len(self.times) // location_successors.TIMES
+        step = len(self.times) // TIMES
         for done, tests in answer.steps:
             ends = len(self.done), len(self.tested) // TEST
             self.done.append(*(numbers[each] for each in done if each in numbers))
@@ -236,34 +254,43 @@ class Network:
             self.times.append(ends[0], len(self.done), ends[1], len(self.tested) // TEST)
         return [
             run,
-            len(self.running) // location_successors.RUNNING,
+            len(self.running) // RUNNING,
             step,
-            len(self.times) // location_successors.TIMES,
+            len(self.times) // TIMES,
         ]
 
-    def _number(self, running: RunningClock) -> int:
+    def number(self, running: RunningClock) -> int:
         """Return the number of a clock, a new one at its first use; below 0 for a window's clock."""
         clock, interval, aim = running
         if clock.sort is Sort.WINDOW:
             assert isinstance(clock.of, int)
             return -1 - self.windows.index(clock.of)
-        self.caps[clock] = max(self.caps.get(clock, 0), cap(clock, interval))
+        kin = self.kin(clock)
+        self.caps[kin] = max(self.caps.get(kin, 0), cap(clock, interval))
+        family = self.families.setdefault((clock, aim) if self.exchange is None else kin, [])
         number = self.numbers.get((clock, aim))
         if number is None:
-            number = self.numbers[clock, aim] = self.automaton.clock(*compared(clock, interval))
+            known = self.automaton.constants(family[0]) if family else compared(clock, interval)
+            number = self.numbers[clock, aim] = self.automaton.clock(*known)
             self.clocks_of.append(clock)
+            self.keys.append((clock, aim))
             self.served.append(clock.sort is Sort.REQUEST)
-        elif self.automaton.compare(number, *compared(clock, interval)):
-            self.outgrown = True
+            family.append(number)
+        for each in family:
+            self.outgrown |= self.automaton.compare(each, *compared(clock, interval))
         return number
+
+    def kin(self, clock: ActorClock) -> ActorClock:
+        """Return the common name of the clocks that exchanges may replace by each other."""
+        return clock if self.exchange is None else self.exchange.kin(clock)
 
     def _restoring(self, vehicle: Name) -> tuple[int, int, int]:
         """Return the clocks RESTORED and ALOFT of a vehicle, and the time that its restoring takes."""
         endurance = dict(self.timing.endurances)[vehicle]
-        restored = self._number(RunningClock(ActorClock(Sort.RESTORED, vehicle), Interval(endurance.after)))
+        restored = self.number(RunningClock(ActorClock(Sort.RESTORED, vehicle), Interval(endurance.after)))
         return (
             restored,
-            self._number(RunningClock(ActorClock(Sort.ALOFT, vehicle), Interval(endurance.lasts))),
+            self.number(RunningClock(ActorClock(Sort.ALOFT, vehicle), Interval(endurance.lasts))),
             endurance.after,
         )
 
@@ -273,6 +300,7 @@ class Network:
         """Work out the edges of locations, and learn the rules that this requires."""
         self.counts_of[location_successors.DONE] = 0
         choices = np.zeros(CHOICE * (len(self.restored) + len(self.windows) + 1), np.int32)
+        images = self.learned_images
 
         def work(model: object, timed: LearnedClocks, growth: AutomatonGrowth, view: LocationView) -> int:
             store, rows, folded = self.store, self.store.rows, self.store.rows.folded
@@ -280,9 +308,13 @@ class Network:
             most = min(rows.room, most_in(len(store.table.room)), int(store.state[LIMIT]))
             target = np.zeros(store.packing.words, np.uint64)
             kept = target if folded is None else np.zeros(rows.kept, np.uint64)
+            renaming: tuple[object, ...] = (None, None)
+            if images is not None:
+                kept = np.zeros(max(rows.kept, store.packing.words), np.uint64)
+                renaming = (images.images, images.scratch())
             scratch = target, kept, np.zeros(2 * self.margin, np.int32), choices
             loop: Callable[..., int] = location_successors.leave
-            known = (model, timed, growth, view, other)
+            known = (model, timed, growth, view, other, *self.model.symmetry, *renaming)
             return loop(*known, *arrays, most, *scratch, locations, store.state, self.counts_of)
 
         self._run(work)
@@ -302,9 +334,18 @@ class Network:
             if why == location_successors.KNOWN:
                 return
             if why == location_successors.MISS:
-                self.model.learn(int(self.store.state[AT]))
+                self._learn_more()
             elif np.array_equal(done, self.counts_of):
                 self.margin *= 2
+
+    def _learn_more(self) -> None:
+        """Learn what a loop has missed: a rule, a representative, or what a clock becomes in one."""
+        if self.learned_images is not None and self.store.state[NODE] == UNNAMED:
+            assert self.model.exchanging is not None
+            self.learned_images.learn(self.model.exchanging.desk.place.tolist())
+            self._see_clocks()
+        else:
+            self.model.learn_missing()
 
     def spill(self, folder: Path) -> None:
         """Move rows, origins and locations to files in a folder; raises OSError as `RowStore.spill`."""
@@ -349,7 +390,7 @@ class Network:
         clocks = len(self.clocks_of)
         most = self.model.actors
         actors = np.zeros(most, np.int32), np.zeros(most + len(self.restored), np.int32)
-        numbers = np.zeros(location_successors.CLOCKS + 1, np.int64)
+        numbers = np.zeros(location_views.CLOCKS + 1, np.int64)
         return LocationView(
             *actors,
             numbers,
@@ -423,7 +464,8 @@ class Network:
     def capped(self, location: int, ages: Iterable[int]) -> tuple[int, ...]:
         """Return clock values, capped where no test distinguishes them."""
         return tuple(
-            min(age, self.caps[clock]) for age, clock in zip(ages, self.clocks(location), strict=True)
+            min(age, self.caps[self.kin(clock)])
+            for age, clock in zip(ages, self.clocks(location), strict=True)
         )
 
     def tests(self, location: int, step: TimedStep) -> list[tuple[Constraint, ...]]:

@@ -13,6 +13,7 @@ from naive_time import Naive, TooLarge
 from scale import IS_WHOLE, examples
 from shipped import TIMED
 from timed_missions import ANSWERS, FLIGHT, SOUTH, timed_missions, timed_programs, with_timing, within
+from timed_reports import assert_alike
 
 from checker import CombinationError, Limits, Reduction, check, replay
 from checker.check import BY_LOOKING
@@ -48,24 +49,6 @@ def decided(c, *properties):
     report, zones = (check(c, asked, engine=each) for each in (Engine.REFERENCE, Engine.FAST))
     assert_alike(report, zones)
     return report
-
-
-def assert_alike(report, other):
-    """Look whether two engines report the same, but for what they have searched."""
-    assert report.verdicts == other.verdicts
-    assert list(map(without_effort, report.notes)) == list(map(without_effort, other.notes))
-    assert (report.configurations, report.transitions, report.depth, report.rules) == (
-        other.configurations,
-        other.transitions,
-        other.depth,
-        other.rules,
-    )
-    assert report.coverage == other.coverage
-    assert report.schedule == other.schedule
-
-
-def without_effort(note):
-    return note.partition("in ticks")[2] or note
 
 
 def when(formula=SOUTH):

@@ -8,12 +8,18 @@ import pytest
 from checked_missions import interrupted_at
 from scale import IS_WHOLE
 from shipped import TIMED
+from swarms import LOOKS, mission
+from timed_missions import with_timing
 
 import checker.limits
 from checker import CheckpointError, Engine, Keeping, Limits, explore
 from checker.engines.archive import read_archive, write_archive
 from checker.engines.fast import row_store
+from checker.engines.timed.original_times import OriginalTimes
 from checker.engines.zones import explorer, timed_automaton_of, timed_checkpoint
+from checker.reduction import Reduced, Reduction
+from semantics.timing.intervals import Interval
+from semantics.timing.timing import Motion, Timing
 from specs.elaboration import load_mission
 
 LIMITS = Limits(configurations=20_000)
@@ -34,7 +40,7 @@ def searched(name, limits=LIMITS, **options):
 
 def seen(found):
     numbers = (found.depth, found.expanded, found.transitions, found.rules, found.bounds)
-    zones = found.times.search
+    zones = (found.times.shown if isinstance(found.times, OriginalTimes) else found.times).search
     matrices = [(place, matrix.tolist()) for place, matrix in zones]
     return list(found.configurations), list(map(int, found.origins)), numbers, matrices
 
@@ -114,3 +120,50 @@ def test_a_checkpoint_of_another_mission_is_refused(tmp_path):
     cut("handover_timed", str(tmp_path), 60)
     with pytest.raises(CheckpointError, match="of another mission, variation, limit or version"):
         searched("handover_timed", keeping=Keeping(str(tmp_path), True, "e"))
+
+
+# --- under symmetry ---------------------------------------------------------------------------------------------------
+
+SPEEDS = tuple((f"robot{number}", Motion((40.0, 60.0))) for number in range(3))
+ALIKE = with_timing(
+    mission(LOOKS, 3, "control timed\nscheduler fcfs").initial, Timing(60_000, SPEEDS, (), Interval(0, 1))
+)
+
+
+def reduced(limits=LIMITS, **options):
+    return explore(
+        ALIKE, engine=Engine.FAST, limits=limits, reduce=Reduced(ALIKE, [Reduction.SYMMETRY]), **options
+    )
+
+
+def cut_reduced(folder, at):
+    limits, stop = interrupted_at(at, LIMITS)
+    return reduced(limits, keeping=Keeping(folder, True, "d"), report=stop, every=0.0)
+
+
+@pytest.mark.parametrize("folded", [False, True], ids=["plain", "folded"])
+def test_a_search_of_representatives_that_was_cut_goes_on(tmp_path, monkeypatch, folded):
+    whole = seen(reduced())
+    if folded:
+        monkeypatch.setattr(row_store, "PLAIN", 0)
+        monkeypatch.setattr(row_store, "COMPRESSED_FROM", 5)
+    for at in CUTS:
+        assert cut_reduced(str(tmp_path), at).bounds
+    kept = Keeping(str(tmp_path), True, "d")
+    assert seen(reduced(keeping=kept)) == whole
+    with pytest.raises(CheckpointError, match="of another mission, variation, limit or version"):
+        explore(ALIKE, engine=Engine.FAST, limits=LIMITS, keeping=kept)
+
+
+def test_a_search_of_representatives_that_fills_memory_goes_over_to_files(tmp_path, monkeypatch):
+    whole, spill, moved = seen(reduced()), timed_automaton_of.Network.spill, []
+
+    def noted(network, folder):
+        moved.append(network.size)
+        spill(network, folder)
+
+    monkeypatch.setattr(timed_automaton_of.Network, "spill", noted)
+    monkeypatch.setattr(checker.limits, "memory_taken", lambda: 0 if moved else 2)
+    assert seen(reduced(Limits(configurations=20_000, memory=1, spill=str(tmp_path)))) == whole
+    assert moved
+    assert moved[0] < len(whole[0])
