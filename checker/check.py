@@ -56,6 +56,9 @@ BY_LOOKING: dict[PropertyKind, Callable[[int], Inspection]] = {
 PATIENCE = 1.0
 """Seconds after which the fast explorer takes over a mission from the reference explorer (`checker.handover`)."""
 
+LARGE = (Stop.CONFIGURATIONS, Stop.MEMORY)
+"""The bounds that the fast explorer may not meet: it takes less memory, and counts zones instead of ticks."""
+
 UNTIMED = "not decided: the mission has no durations; give it a section `timing`"
 
 
@@ -142,7 +145,7 @@ def check(  # noqa: PLR0913 - independent options
     with Handover(PATIENCE, Compilation(initial, asked, reductions, threads, times, ways)) as handover:
         tried = run(able[0], replace(limits, overtaken=handover.is_due, uncounted=handover.uncounted))
     stops = {bound.stop for bound in tried.bounds}
-    if Stop.OVERTAKEN in stops or (handover.is_waiting and Stop.MEMORY in stops):
+    if Stop.OVERTAKEN in stops or (handover.is_waiting and not stops.isdisjoint(LARGE)):
         spent = limits.spent + tried.seconds - handover.uncounted.seconds
         return run(able[1], replace(limits, spent=spent))
     return tried

@@ -11,17 +11,14 @@ import pickle
 import subprocess
 import sys
 from time import monotonic
-from typing import TYPE_CHECKING, Any, NamedTuple, Self
+from typing import TYPE_CHECKING, NamedTuple, Self
 
-from checker.limits import Limits, Uncounted
+from checker.limits import Uncounted
 from checker.reduction.refusals import Reduction
 
 if TYPE_CHECKING:
     from semantics.properties.property import Property
     from semantics.state.configuration import Configuration
-
-ENOUGH = 20_000
-"""The configurations in which a check uses all its loops, also those of several threads."""
 
 
 class Compilation(NamedTuple):
@@ -62,7 +59,7 @@ class Compilation(NamedTuple):
     def begin(self) -> subprocess.Popen[bytes]:
         """Compile in another process."""
         process = subprocess.Popen(
-            [sys.executable, "-m", __name__],
+            [sys.executable, "-m", f"{__package__}.compile_loops"],
             stdin=subprocess.PIPE,
             stdout=subprocess.DEVNULL,
             stderr=subprocess.DEVNULL,
@@ -127,24 +124,3 @@ def _has_cores() -> bool:
     """Return whether there is a core for the other process."""
     cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
     return cores > 1
-
-
-def _compile(job: Any) -> None:
-    from checker.check import check  # noqa: PLC0415 - only in a process of its own
-    from checker.engines.contract import Engine  # noqa: PLC0415 - the same
-
-    initial, properties, reductions, threads, times, ways = job
-    check(
-        initial,
-        properties,
-        Limits(configurations=ENOUGH),
-        engine=Engine.FAST,
-        reduce=reductions,
-        threads=threads,
-        times=times,
-        ways=ways,
-    )
-
-
-if __name__ == "__main__":
-    _compile(pickle.load(sys.stdin.buffer))  # the process that started this one wrote it

@@ -43,6 +43,7 @@ LAYERS = (
     "checker.engines.choose",
     "checker.handover",
     "checker.check",
+    "checker.compile_loops",
 )
 """The parts of the checker: each may import those above it in this list."""
 
@@ -51,7 +52,6 @@ UPWARD = {
     ("checker.engines", "checker.engines.timed"),  # for types
     ("checker.engines", "checker.transition_system"),  # methods of `Exploration`
     ("checker.engines.zones", "checker.engines.timed"),
-    ("checker.handover", "checker.check"),
     ("checker.properties", "checker.engines.timed"),  # first runs, and answers about time
     ("checker.properties", "checker.traces"),
     ("checker.properties", "checker.verdicts"),

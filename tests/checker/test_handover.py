@@ -99,3 +99,13 @@ def test_the_loops_are_compiled_in_another_process(tmp_path):
     )
     assert done.returncode == 0, done.stderr
     assert done.stdout == "compiled\n"
+
+
+def test_a_bound_that_only_the_reference_engine_meets_does_not_end_the_check(monkeypatch):
+    monkeypatch.setattr(Compilation, "is_done", lambda _: False)
+    monkeypatch.setattr(sys.modules["checker.check"], "PATIENCE", 0.0)
+    monkeypatch.setattr(handover, "_has_cores", lambda: True)
+    report = check(
+        load_mission("oil_spill_timed"), limits=Limits(configurations=1_000)
+    )  # 376 zones, more ticks
+    assert report.complete
