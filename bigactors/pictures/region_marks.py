@@ -217,7 +217,9 @@ class _Drawing:
         self.spans.append(MapSpan(spot, spot, f"may meet{gap}" if not gap else f"0 m{gap}", broken))
 
     def _within(self, u: Located, v: Located, distance: float, *, broken: bool) -> None:
-        """Draw the limit around a certain place, and the line from there to the farthest point."""
+        """Draw the limit around a certain entity, and the line from there to the farthest point."""
+        if not v.region.certain and u.region.certain and not u.region.is_area:
+            u, v = v, u
         limit = self._shape(v, u, distance)
         if v.region.certain:
             self.limits.append(limit)

@@ -1,4 +1,4 @@
-"""What a report says of atoms about regions: the figure, the whereabouts of both entities, and the points."""
+"""The words of reports about regions: the figure of an atom, the whereabouts of both entities, and the points."""
 
 from collections.abc import Iterator
 
@@ -12,7 +12,7 @@ from semantics.properties.region_atoms import (
     WithinRangeOf,
     operands,
 )
-from semantics.regions.region_truth import facts_of, flights, located
+from semantics.regions.region_truth import facts_of, flights, is_true, located
 from semantics.state.configuration import Configuration
 from semantics.state.physical_model import Carried, InTransit, Placed, encloses
 from semantics.state.signature import REGION, Name
@@ -52,15 +52,19 @@ def _first(some: Iterator[Proposition]) -> Iterator[Proposition]:
 
 
 def _figure(atom: RegionAtom, c: Configuration) -> str:
-    """Return what may happen, with its figure."""
+    """Return in words what an atom says if it is true, or what may happen if it is false."""
     one, other = operands(atom)
+    is_so = is_true(atom, c)
     match atom:
         case PossiblyIn():
-            return f"{one} may be in {other}"
+            return f"{one} may be in {other}" if is_so else f"{one} cannot be in {other}"
         case SurelyIn():
-            return f"{one} may be outside {other}"
+            return f"{one} is surely in {other}" if is_so else f"{one} may be outside {other}"
         case WithinRangeOf(distance=distance):
-            return f"{one} may be farther than {_length(distance)} from {other}"
+            verb = "cannot" if is_so else "may"
+            return f"{one} {verb} be farther than {_length(distance)} from {other}"
+        case ApartFrom(distance=distance) if is_so:
+            return f"{one} cannot be nearer than {_length(distance)} to {other}"
         case ApartFrom():
             found = _nearest(atom, c)
             if found is None and one == other:
@@ -71,7 +75,7 @@ def _figure(atom: RegionAtom, c: Configuration) -> str:
             near = (
                 f"{one} may meet {other}"
                 if meets
-                else f"{one} may come within {int(found.metres)} m of {other}"
+                else f"{one} may come within {int(found.metres):,} m of {other}"
             )
             return f"{near}, {found.gap:g} m above or below" if found.gap else near
 

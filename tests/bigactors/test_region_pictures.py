@@ -7,6 +7,9 @@ import pytest
 from bigactors import check
 from bigactors.pages import Story, trace_page
 from bigactors.pictures import draw_configuration, marks_of
+from bigactors.pictures.region_marks import RegionMarks
+from semantics.properties.property import watching
+from semantics.properties.region_atoms import WithinRangeOf
 from specs.elaboration import load_mission
 
 pytestmark = pytest.mark.usefixtures("missions")
@@ -56,6 +59,17 @@ def test_the_nearest_points_are_drawn_while_something_is_under_way():
 def test_a_range_is_drawn_around_the_station():
     trace, marks = marked("broken_range_of_radio")
     assert len(marks.ways(trace.configurations[-1]).limits) == 1
+
+
+def test_a_range_is_drawn_around_whichever_of_both_is_certain():
+    mission = load_mission("broken_range_of_radio")
+    flying = marked("broken_range_of_radio")[0].configurations[-1]
+    ways = [
+        RegionMarks(watching(mission.initial, mission.properties), (atom,), flying).ways(flying)
+        for atom in (WithinRangeOf("uav0", "gcs0", 6_000.0), WithinRangeOf("gcs0", "uav0", 6_000.0))
+    ]
+    assert ways[0].limits
+    assert ways[0] == ways[1]
 
 
 def test_a_path_leads_by_the_places_of_its_flight():

@@ -167,3 +167,16 @@ def test_a_report_says_the_figure_the_whereabouts_and_the_points():
     assert region_lines(And((Not(crosses), WithinRangeOf("uav0", "gcs0", 12_600.0))), there) == (
         "uav0 may be farther than 12.6 km from gcs0: uav0 in east0, gcs0 at (37.10000, -8.70000)",
     )
+
+
+def test_a_report_of_an_atom_that_may_not_be_true_does_not_turn_it_round():
+    *_, there = runs("control(MOVE_HOST_TO east0)", labels=TO_EAST)
+    atoms = {
+        PossiblyIn("uav0", "prison0"): "uav0 cannot be in prison0",
+        Not(SurelyIn("uav0", "east0")): "uav0 is surely in east0",
+        Not(WithinRangeOf("uav0", "gcs0", 20_000.0)): "uav0 cannot be farther than 20 km from gcs0",
+        Not(ApartFrom("uav0", "gcs0", 1_000.0)): "uav0 cannot be nearer than 1 km to gcs0",
+    }
+    for formula, words in atoms.items():
+        (line,) = region_lines(formula, there)
+        assert line.startswith(f"{words}: uav0 in east0"), line
