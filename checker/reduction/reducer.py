@@ -71,8 +71,7 @@ class Reduced:
     def refuses(self, asked: Property) -> str | None:
         """Return why a property is undecided under these reductions, None if it is decided."""
         if not asked.is_of_runs:
-            kept = asked.kind.about.reducible
-            return None if kept else f"it is not known to be kept for properties of the kind '{asked.kind}'"
+            return None
         reason = refused_by_por(asked) if Reduction.POR in self.reductions else None
         if reason is None and self.symmetry is not None:
             reason = refused_by_symmetry(self.decided_for(asked), self.symmetry)

@@ -31,8 +31,6 @@ class About:
         says: The meaning of such a property, in a sentence.
         asked: The way in which a mission asks for it.
         examined: The singular and plural of the items that are examined for it; empty if they are not reported.
-        reducible: Whether reductions preserve it: they may omit nothing that decides it (`checker.reduction`). Some
-            properties of runs are not preserved all the same (`checker.reduction.preserved_runs`).
         nothing: The meaning of an empty examination, if that is no shortcoming.
         vacuous: The meaning of an empty examination, if a verdict that holds is then vacuous.
         counted: Whether all violations are counted, instead of searching for one.
@@ -41,7 +39,6 @@ class About:
     says: str
     asked: RequestMode
     examined: tuple[str, str]
-    reducible: bool
     nothing: str = ""
     vacuous: str = ""
     counted: bool = True
@@ -93,87 +90,74 @@ ABOUT: Final = {
         "Every control next in line can be served in the present world.",
         RequestMode.BY_DEFAULT,
         ("control next in line", "controls next in line"),
-        reducible=True,
         vacuous="no control was ever next in line",
     ),
     PropertyKind.RACE_FREEDOM: About(
         "No bigActor changes anything that another's control depends on.",
         RequestMode.BY_DEFAULT,
         ("control or pair of controls", "controls and pairs of controls"),
-        reducible=True,
         vacuous="no control was ever served",
     ),
     PropertyKind.DEADLOCK_FREEDOM: About(
         "Some bigActor can move as long as one has work left.",
         RequestMode.BY_DEFAULT,
         ("configuration at rest", "configurations at rest"),
-        reducible=True,
         nothing="some bigActor can always move",
     ),
     PropertyKind.ARRIVAL: About(
         "No run waits for ever for the end of a flight.",
         RequestMode.BY_NAME,
         ("end of a flight", "ends of flights"),
-        reducible=True,
         vacuous="no flight ever ends",
     ),
     PropertyKind.COMPUTATION: About(
         "No bigActor's computation fails or diverges.",
         RequestMode.ALWAYS,
         ("internal step", "internal steps"),
-        reducible=True,
         nothing="no bigActor computes anything that could fail",
     ),
     PropertyKind.INVARIANT: About(
         "A proposition is true of every configuration.",
         RequestMode.OF_CONFIGURATIONS,
         CONFIGURATIONS,
-        reducible=True,
     ),
     PropertyKind.REACHABLE: About(
         "A proposition is true of some configuration.",
         RequestMode.OF_CONFIGURATIONS,
         ("", ""),
-        reducible=True,
     ),
     PropertyKind.LTL: About(
         "A formula of linear time is true of every fair run.",
         RequestMode.OF_RUNS,
         CONFIGURATIONS,
-        reducible=True,
         counted=False,
     ),
     PropertyKind.CTL: About(
         "A formula of branching time is true of the tree of fair runs.",
         RequestMode.OF_RUNS,
         CONFIGURATIONS,
-        reducible=True,
         counted=False,
     ),
     PropertyKind.PROGRESS: About(
         "Every pending request is eventually served on every fair run.",
         RequestMode.OF_RUNS,
         ("request", "requests"),
-        reducible=False,
     ),
     PropertyKind.WITHIN: About(
         "A proposition becomes true in time on every run.",
         RequestMode.OF_TIMES,
         CONFIGURATIONS,
-        reducible=True,
         counted=False,
     ),
     PropertyKind.ENDURANCE: About(
         "No vehicle is ever away from its place of restoration for longer than it lasts.",
         RequestMode.OF_TIMED_MISSIONS,
         CONFIGURATIONS,
-        reducible=True,
     ),
     PropertyKind.TIME: About(
         "When a proposition first becomes true: the earliest and the latest moment.",
         RequestMode.OF_TIMES,
         CONFIGURATIONS,
-        reducible=True,
         counted=False,
     ),
 }

@@ -19,8 +19,6 @@ from checker.reduction.cycle_proviso import NOWHERE, Lead, Paths
 from checker.reduction.footprint_slots import NOTHING
 from checker.traces import replay, to_json
 from semantics import Control, Scheduler, hypothesis_strategies
-from semantics.properties.kinds import PropertyKind
-from semantics.properties.property import Property
 from semantics.properties.propositions import Inside, Waiting
 from semantics.races.monitor import monitored
 from specs import MissionError
@@ -196,11 +194,6 @@ def test_what_it_does_not_preserve_is_refused():
         RefusedError, match="'por' is refused: under 'scheduler fcfs' all requests stand in one"
     ):
         check(mission, reduce=POR)
-    found = Reduced(load_mission("oil_spill").initial, POR)
-    assert (
-        found.refuses(Property(PropertyKind.WITHIN, "p"))
-        == "it is not known to be kept for properties of the kind 'within'"
-    )
 
 
 # --- races ----------------------------------------------------------------------------------------------------

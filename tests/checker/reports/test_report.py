@@ -120,6 +120,7 @@ def test_the_data_say_what_the_report_says():
         "transitions": 12,
         "depth": 4,
         "reduced": [],
+        "ways": None,
         "transitions_allowed": 12,
         "exit_code": 1,
         "rules": {"actuate": 6, "req_ctr": 6},

@@ -98,12 +98,12 @@ def test_the_cross_check_finds_what_was_learned_wrong():
 def test_timed_missions_are_checked_again(monkeypatch, is_right):
     doubt = timed_explorer._doubt
 
-    def spoil_and_doubt(network, count):
+    def spoil_and_doubt(network, count, reduce):
         if not is_right:
             width, transitions = network.store.packing.words, len(network.learner.leaves.rule)
             masks = network.model.loops.masks[: 2 * width * transitions].reshape(-1, 2, width)
             masks[:, 0], masks[:, 1] = ~np.uint64(0), 0  # nothing is written
-        doubt(network, count)
+        doubt(network, count, reduce)
 
     monkeypatch.setattr(timed_explorer, "_doubt", spoil_and_doubt)
     with nullcontext() if is_right else pytest.raises(Disagreement):
