@@ -224,9 +224,12 @@ class _Measuring:
         pairs = self.seen.together.get((stance.entity, place), ())
         found = PlaceDistance(place, None)
         for other in sorted({other for one, other in pairs if one == stance}, key=self.whereabouts.words):
-            there = other.located(self.facts)
-            far = reach(vehicle, there) if place in self.seen.ranged else None
-            found = nearer(found, PlaceDistance(place, clearance(vehicle, there), far))
+            try:
+                there = other.located(self.facts)
+                far = reach(vehicle, there) if place in self.seen.ranged else None
+                found = nearer(found, PlaceDistance(place, clearance(vehicle, there), far))
+            except RegionError as error:
+                self._leave_out(error)
         return found
 
     def _parts(self) -> Iterator[SeenPart]:

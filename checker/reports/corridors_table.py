@@ -21,7 +21,7 @@ Row = tuple[str, ...]
 def corridors_text(found: Corridors) -> Iterator[str]:
     """Yield the ways line by line: each flight with its legs, then each pair of vehicles."""
     if not found.flights:
-        yield "  ways: none; the mission makes no flight"
+        yield "  ways: none; the mission makes no flight" if found.complete else "  ways: none was measured"
     else:
         yield from aligned(flight_rows(found))
     if found.pairs:

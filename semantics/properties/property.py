@@ -81,17 +81,23 @@ def region_atoms(properties: Iterable[Property]) -> Iterator[RegionAtom]:
 
 def instantiated_region_atoms(properties: Iterable[Property]) -> tuple[RegionAtom, ...]:
     """Return the atoms about regions in the propositions of properties, each once; of a quantifier, its instances'."""
-    formulas = (each.formula for each in properties if each.kind.has_proposition)
-    atoms = (atom for formula in formulas for atom in atoms_of(formula))
+    atoms = (
+        atom
+        for each in _parts(properties, whole=True)
+        if isinstance(each, Proposition)
+        for atom in atoms_of(each)
+    )
     return tuple(dict.fromkeys(atom for atom in atoms if isinstance(atom, RegionAtom)))
 
 
-def _parts(properties: Iterable[Property]) -> Iterator[object]:
-    """Yield the parts of properties, at any depth."""
+def _parts(properties: Iterable[Property], *, whole: bool = False) -> Iterator[object]:
+    """Yield the parts of properties, at any depth; those of a proposition unless it is left `whole`."""
     waiting: list[object] = list(properties)
     while waiting:
         part = waiting.pop()
         yield part
+        if whole and isinstance(part, Proposition):
+            continue
         if isinstance(part, tuple):
             waiting.extend(part)
         elif not isinstance(part, VariableOf):

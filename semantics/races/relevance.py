@@ -255,9 +255,9 @@ def _slots(setting: Setting, control: ControlBy, hosts: Names) -> Questions:
 def instances(setting: Setting, control: ControlBy, hosts: Names) -> tuple[Reaction, ...] | None:
     """Return the reactions that a control may request, for any names as arguments; None if there are too many."""
     ranges = _ranges(setting, control, hosts)
-    if prod(map(len, ranges)) > MOST_INSTANCES:
+    make = setting.program.reactions.get(control.name)  # a rule with a mistake, which is reported, makes none
+    if make is None or prod(map(len, ranges)) > MOST_INSTANCES:
         return None
-    make = setting.program.reactions[control.name]
     found = []
     for host, *names in product(*map(sorted, ranges)):
         with suppress(Fault):  # the command may reject some names

@@ -68,10 +68,10 @@ def _instances(
         ranges = [_entities(setting, each) for each in given]
     else:
         ranges = [tuple(sorted(setting.kinds))] * (1 + len(control.arguments))
-    if prod(map(len, ranges)) > MOST_ARGUMENTS:
+    make = setting.program.reactions.get(control.name)  # a rule with a mistake, which is reported, makes none
+    if make is None or prod(map(len, ranges)) > MOST_ARGUMENTS:
         yield None
         return
-    make = setting.program.reactions[control.name]
     for host, *names in product(*ranges):
         with suppress(Fault):  # the command may reject some names
             reaction = make(host, *names)

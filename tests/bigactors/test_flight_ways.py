@@ -1,6 +1,7 @@
 """`check --ways`: each flight's length and distances, and the least distance of vehicles under way together."""
 
 import json
+from pathlib import Path
 
 import pytest
 from pyproj import Geod
@@ -121,3 +122,29 @@ def test_a_bound_leaves_ways_out_and_says_so(bigactors):
     assert not found["complete"]
     _, out, _ = bigactors("check", "corridor", "--max-configurations", "8", "--ways")
     assert "\n  ways so far " in out
+
+
+@pytest.mark.parametrize(
+    "check",
+    ['ltl "l": [] not possibly uav0 in tower0', 'ctl "c": AG uav0 within 30 km of tower0'],
+    ids=["ltl", "ctl"],
+)
+def test_places_of_properties_of_runs_have_columns(bigactors, mission, check):
+    path = Path(mission)
+    path.write_text(MISSION[: MISSION.index("check {")] + f"check {{ {check} }}")
+    _, text, _ = bigactors("check", mission, "--ways", "--no-traces")
+    assert "from tower0" in text
+
+
+def test_a_flight_is_measured_though_a_place_is_too_far(bigactors, mission):
+    path = Path(mission)
+    far = "far0: Location = circle (50, 20) radius 300 m\n  uav0: UAV"
+    path.write_text(MISSION.replace("uav0: UAV", far).replace("in tower0 }", "in far0 }"))
+    _, text, _ = bigactors("check", mission, "--ways", "--no-traces")
+    assert "uav0 from west0 to east0     6,900 to 7,501 m   -" in text
+    assert "not measured" in text
+
+
+def test_a_table_without_flights_says_whether_any_was_left_out():
+    assert list(corridors_text(Corridors())) == ["  ways: none; the mission makes no flight"]
+    assert list(corridors_text(Corridors(complete=False))) == ["  ways: none was measured"]

@@ -311,3 +311,10 @@ def test_a_flight_over_the_date_line_is_compared_across_it():
     uav = Located("uav", region)
     assert possibly_in(uav, certain(circle((10.0, 180.0), 500)))
     assert nearest(uav, certain(point(10.1, -180.0))).metres == pytest.approx(11_061 - 513, abs=10)
+
+
+def test_what_lies_in_a_certain_place_is_no_distance_from_it_whatever_its_margin():
+    inside = flying(INNER, margin=300.0)
+    assert surely_in(inside, certain(WEST))
+    assert within(inside, certain(WEST), 0.0)
+    assert not within(flying(INNER, margin=3_000.0), certain(WEST), 100.0)

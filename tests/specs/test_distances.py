@@ -137,3 +137,9 @@ def test_an_invariant_about_the_way_silences_the_warning_about_the_place():
     assert [each.code for each in warned] == [Code.MAY_CROSS]
     both = f'check {{ invariant "p": {denied} invariant "q": not possibly uav0 in prison0 }}'
     assert read_mission(f"{text}\ncontrol timed {both}").warnings == ()
+
+
+@pytest.mark.parametrize("claim", ["not possibly uav0 in prison0", "not actually uav0 in prison0"])
+def test_a_mistake_in_a_rule_is_reported_alone(claim):
+    rule = "rule bad(u: UAV) { u | -> u }\nBigActor b hosted_at uav1 with_behavior { control(bad(uav0)) }\n"
+    assert refusal(claim, f"{rule}control timed") == {Code.RULE_SYNTAX}
