@@ -155,7 +155,7 @@ def is_covered(a: RegionPart, b: RegionPart, metres: float) -> bool:
     if least_bound(a, b) > metres:
         return False
     (place,) = b.sources[:1]
-    if b.is_exact and isinstance(place, Geometry) and lies_in(a, place):  # its margin, too
+    if metres >= 0.0 and b.is_exact and isinstance(place, Geometry) and lies_in(a, place):  # its margin, too
         return True
     left = metres - a.margin + b.margin - doubt(a, b)
     return left >= 0.0 and lies_within(area_of(a), area_of(b), left)
