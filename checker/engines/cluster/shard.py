@@ -213,7 +213,9 @@ class Shard:
         if self.located_in is where:
             return
         self.column_at, self.varying = column_at(where), np.flatnonzero(where.mask).astype(np.uint64)
-        if self.located_in is None or not where.extends(self.located_in):
+        if self.located_in is not None and where.extends(self.located_in):
+            self.outbox.packing = where  # its rows keep their bits; rows to come have those of new columns, too
+        else:
             self.outbox.repack(where)
             self._forget_sent()
         self.located_in = where
