@@ -6,6 +6,8 @@ import pytest
 from checker import Engine, explore
 from checker.engines.cluster.row_keys import Keys
 from checker.engines.cluster.shard import Shard
+from semantics.properties.property import watching
+from semantics.races.monitor import monitored
 from specs.elaboration import load_mission
 
 
@@ -59,3 +61,20 @@ def test_what_was_learned_is_learned_again_from_the_start_so_that_checkpoints_sa
     again, before = ({row for row, *_ in each} for each in (one.model.learned, learned))
     assert again
     assert again <= before  # of values that it knows it need not ask
+
+
+def test_rows_that_wait_keep_the_values_of_new_columns():
+    mission = load_mission("rendezvous")
+    c = monitored(watching(mission.initial, mission.properties))
+    shards, layer = [Shard(c, 64, me, 2) for me in range(2)], 1
+    while any(each.expanded < each.size for each in shards):
+        for each in shards:
+            each.enter(layer)
+        while any(each.expanded < each.end for each in shards):
+            sent = [each.expand(layer, 1024) for each in shards]
+            for me, each in enumerate(shards):
+                each.take(*(parcels[me] for parcels in sent))
+        layer += 1
+    reached = [each.model.configuration(number) for each in shards for number in range(each.size)]
+    assert len(reached) == 18_051
+    assert set(reached) == set(explore(c, engine=Engine.FAST).configurations)
