@@ -214,7 +214,9 @@ class Shard:
             return
         self.column_at, self.varying = column_at(where), np.flatnonzero(where.mask).astype(np.uint64)
         if self.located_in is not None and where.extends(self.located_in):
-            self.outbox.packing = where  # its rows keep their bits; rows to come have those of new columns, too
+            self.outbox.packing = (
+                where  # its rows keep their bits; rows to come have those of new columns, too
+            )
         else:
             self.outbox.repack(where)
             self._forget_sent()
