@@ -46,7 +46,7 @@ class MapSpan:
 
 @dataclass(frozen=True, slots=True)
 class MapWays:
-    """What a map shows of regions.
+    """The regions on a map.
 
     Attributes:
         regions: Where entities may be.

@@ -18,7 +18,7 @@ HALO: Final = "#e4572e"
 """The colour behind highlighted entities."""
 
 BROKEN: Final = "#c0281c"
-"""The colour of what breaks a property."""
+"""The colour of a breach."""
 
 MARK: Final = "#1f2933"
 """The colour of the dashed outline of marked entities."""

@@ -1,4 +1,4 @@
-"""Regions of what is seen: an entity's last position, grown by its age, and the rest of its way.
+"""Regions from sightings: an entity's last position, grown by its age, and the rest of its way.
 
 A vehicle flies at most at the speed that the mission gives it, or at the speed that it reported. Without the mission's
 speed it may gain speed, by `STRONGEST`. The region of an entity whose position is unknown is everything: None.

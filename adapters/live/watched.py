@@ -1,4 +1,4 @@
-"""What a run watches of ways: who is off its way or out of its band, and the invariants about ways."""
+"""The watch over ways: vehicles off their way or out of their band, and the invariants about ways."""
 
 from __future__ import annotations
 

@@ -61,7 +61,7 @@ class LegendEntry:
 
 @dataclass(frozen=True, slots=True)
 class Look:
-    """The look of a configuration: its colours, and what is marked.
+    """The look of a configuration: its colours and marks.
 
     Attributes:
         palette: The colours of kinds and of channels.

@@ -1,4 +1,4 @@
-"""What a picture shows of a property about regions: where its entities may be, the breach, and the nearest points."""
+"""The marks of a property about regions: the regions of its entities, the breach, and the nearest points."""
 
 from __future__ import annotations
 

@@ -147,14 +147,14 @@ class Corridors:
 
 
 MOST_NOTES: Final = 5
-"""The most notes on what was left out."""
+"""The most notes on omitted ways."""
 
 LEVEL: Final = 1e-9
 """Metres of altitude from which two bands do not meet."""
 
 
 def measured(facts: RegionFacts, seen: FlownStances, *, complete: bool) -> Corridors:
-    """Return the corridors of the stances that were seen; a bound leaves some out, and a note says so."""
+    """Return the corridors of the stances that were seen; where a bound omits some, there is a note."""
     return _Measuring(facts, seen).run(complete=complete and not seen.bounds)
 
 

@@ -56,7 +56,7 @@ class _Gathering:
         return not self.vanishing.isdisjoint(self.bearers[name])
 
     def movers(self, name: Name) -> tuple[Name, ...]:
-        """Return the agents whose flights may move an entity; none if its placement says enough of them.
+        """Return the agents whose flights may move an entity; none if its placement determines these flights.
 
         It does not if the flight may lead through a VIA, begin or end aboard a carrier, or outlive its entity.
         """
@@ -65,7 +65,7 @@ class _Gathering:
         return tuple(sorted({move.agent for move in moves})) if needed else ()
 
     def motion(self, name: Name) -> EntityMotion:
-        """Return all that the text says about the positions of an entity."""
+        """Return all facts of the text about the positions of an entity."""
         c, setting, moves = self.c, self.setting, self.moves[name]
         given = tuple(_given(c, name))
         drift = next((each for each in _drifts(setting, name) if each.within), None)

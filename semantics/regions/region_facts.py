@@ -14,7 +14,7 @@ class RegionFacts:
 
     Attributes:
         motions: The possible motion of each entity, by name.
-        movers: For each entity the agents whose flights may move it, sorted; none if its placement says enough of them.
+        movers: For each entity the agents whose flights may move it, sorted; none if its placement determines them.
     """
 
     motions: Mapping[Name, EntityMotion]

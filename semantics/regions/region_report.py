@@ -52,7 +52,7 @@ def _first(some: Iterator[Proposition]) -> Iterator[Proposition]:
 
 
 def _figure(atom: RegionAtom, c: Configuration) -> str:
-    """Return in words what an atom says if it is true, or what may happen if it is false."""
+    """Return the meaning of a true atom in words, or the possible event behind a false one."""
     one, other = operands(atom)
     is_so = is_true(atom, c)
     match atom:

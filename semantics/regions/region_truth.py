@@ -74,7 +74,7 @@ def standpoint(at: Placement | None) -> Standpoint:
 
 
 def flights(c: Configuration, entity: Name) -> frozenset[FlightPlan]:
-    """Return the flights that move an entity; only if its placement does not say enough of them, it is read from η."""
+    """Return the flights that move an entity; η is read only if its placement does not determine them."""
     movers = facts_of(c).movers[entity]
     if not movers:
         to = c.structure.physical.going_to(entity)

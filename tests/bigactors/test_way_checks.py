@@ -1,4 +1,4 @@
-"""Before take-off a run names what it watches of ways, and what it does not."""
+"""Before take-off a run names the claims about ways that it watches, and those that it does not."""
 
 from bigactors.arguments import parse_arguments
 from bigactors.cli import main

@@ -126,7 +126,7 @@ def _items(live: LiveRun, before: StartChecks, *, checked: bool) -> Iterator[Ite
 
 
 def _of_ways(plan: Plan, mission: ElaboratedMission) -> Iterator[Item]:
-    """Yield what the run watches of ways, and what it does not."""
+    """Yield the properties and assumptions about ways that the run watches, and those that it does not."""
     names = [each.name for each in plan.invariants]
     if names:
         yield _item("invariants about ways are watched", detail=", ".join(names))

@@ -1,4 +1,4 @@
-"""Checks before take-off of the assumptions and invariants about ways: circles, and what the run does not watch."""
+"""Checks before take-off of the assumptions and invariants about ways: circles, and unwatched claims."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ def check_ways(
 
 
 def unwatched(plan: Plan, mission: ElaboratedMission) -> Iterator[str]:
-    """Yield what a run does not watch of the mission's assumptions and properties about ways."""
+    """Yield the mission's assumptions and properties about ways that a run does not watch."""
     for vehicle in sorted(mission.setting.strays.keys() - plan.vehicles.keys()):
         yield f"nothing watches that {vehicle} keeps to its way: give --vehicle {vehicle}=..."
     watched = {each.name for each in plan.invariants}

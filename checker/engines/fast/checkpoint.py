@@ -43,7 +43,7 @@ ROWS: Final[Kinds] = {
     "packing": np.uint64,
     "learned": np.int64,
 }
-"""The arrays of the rows of a model, and of what was learned from them."""
+"""The arrays of the rows of a model and of its journal."""
 
 KINDS: Final[Kinds] = {
     **ROWS,
@@ -117,7 +117,7 @@ def save(search: RowSearch, journey: Journey, digest: str, path: Path) -> None:
 
 
 def kept_rows(model: RuleModel) -> tuple[NDArray[Any], ...]:
-    """Return the rows of a model, and what was learned from them, as arrays (see `ROWS`)."""
+    """Return the rows of a model and its journal as arrays (see `ROWS`)."""
     store, rows = model.store, model.store.rows
     return (
         rows.words[: store.size * rows.kept],

@@ -78,7 +78,7 @@ class Expander:
         return count
 
     def learn(self) -> None:
-        """Learn what was missing, or make the room that was missing, where gathering ended."""
+        """Learn the missing rule, or make the missing room, where gathering ended."""
         look()
         if self.state[NODE] == WIDE:
             self.successors *= 2

@@ -30,7 +30,7 @@ COMPRESSED_FROM = 1 << 15
 """The number of wide rows from which they are tree-compressed: the loops for it take seconds to compile."""
 
 Making = tuple[Any, Any, Any]
-"""What makes successors: the model's tables, the symmetry tables and this thread's scratch space (None without)."""
+"""The makers of successors: the model's tables, the symmetry tables and this thread's scratch space (None without)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -158,7 +158,7 @@ class RowStore:
         return targets
 
     def _completing(self, making: Making) -> tuple[Any, Any, Any, Any]:
-        """Return what completes a compressed successor; plain ones are complete. Growing replaces it: don't keep it."""
+        """Return the tables that complete a compressed successor. Growing replaces them: don't keep them."""
         folded = self.rows.folded
         return (None, None, None, None) if folded is None else (*making, folded)
 

@@ -1,4 +1,4 @@
-"""The model: what is known of a mission's rules, in the form that the compiled loops read for the rows of a store."""
+"""The model: the learned rules of a mission, in the form that the compiled loops read for the rows of a store."""
 
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
@@ -31,11 +31,11 @@ UNPLANTED = -1
 """The stand-in for a node of a tree that had none."""
 
 Lesson = tuple[int, int, int, int]
-"""What was learned once: row, tree, node and code; or a part of what was learned of symmetry, with a row below 0."""
+"""A journal entry: row, tree, node and code; with a row below 0, a part of an entry of the symmetry tables."""
 
 
 class RuleModel:
-    """What is known of the rules.
+    """The learned rules.
 
     Who keeps tables of its own about the rules rebuilds them after each lesson: it is one of the `followers`. Call
     `see` once they all are.
@@ -99,7 +99,7 @@ class RuleModel:
 
     @property
     def making(self) -> Making:
-        """What makes successors: the tables, the symmetry tables and this thread's scratch space."""
+        """The makers of successors: the tables, the symmetry tables and this thread's scratch space."""
         return (self.loops, *self.symmetry)
 
     @property
@@ -131,7 +131,7 @@ class RuleModel:
     # --- learning -------------------------------------------------------------------------------------------------
 
     def learn_missing(self) -> None:
-        """Learn what the row lacks at which a loop stopped."""
+        """Learn the rule or representative at whose lack a loop stopped."""
         if self.exchanging is not None and self.store.state[NODE] == UNSORTED:
             self.learned += self.exchanging.missed
             self.exchanging.learn()

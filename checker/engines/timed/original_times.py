@@ -146,7 +146,7 @@ class OriginalTimes:
         return run
 
     def run_before(self, place: int, by: Transition | None) -> TimedRun:
-        """Return the first run to what a representative stands for, then through a transition if that is ever taken."""
+        """Return the first run to a representative's configurations, then through a transition if one is taken."""
         return self._original(self.shown.run_before(place, by))
 
     def in_original_names(self, place: int, by: Transition | None, text: str) -> str:

@@ -104,7 +104,7 @@ def note_members(place: Ints, n: FormerNames) -> None:
 
 @inner(cache=True)
 def note_clock(x: ClockImages, n: FormerNames, clock: int) -> bool:
-    """Note what a clock of the representative was called; False if that is unknown."""
+    """Note the former name of a clock of the representative; False if it is unknown."""
     former = image_of(x, x.windows + clock, n.members)
     if former >= 0:
         n.clocks[clock] = former - x.windows

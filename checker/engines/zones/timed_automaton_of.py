@@ -339,7 +339,7 @@ class Network:
                 self.margin *= 2
 
     def _learn_more(self) -> None:
-        """Learn what a loop has missed: a rule, a representative, or what a clock becomes in one."""
+        """Learn the rule, the representative or the image of a clock that a loop lacked."""
         if self.learned_images is not None and self.store.state[NODE] == UNNAMED:
             assert self.model.exchanging is not None
             self.learned_images.learn(self.model.exchanging.desk.place.tolist())

@@ -1,4 +1,4 @@
-"""What the page tells of ways: the invariants with their figures, the broken ones first."""
+"""Ways on the page: the invariants with their figures, the broken ones first."""
 
 FIGURE = "uav0 may come within 42 m of uav1; at least 50 m"
 NEAR = {

@@ -1,4 +1,4 @@
-"""What a console shows of ways: how far a vehicle may stray, and the invariants with their figures."""
+"""Ways on the console: the permitted straying of vehicles, and the invariants with their figures."""
 
 import jsonschema
 import pytest
