@@ -57,7 +57,8 @@ class Compilation(NamedTuple):
         return gather
 
     def begin(self) -> subprocess.Popen[bytes]:
-        """Compile in another process."""
+        """Compile in another process; raises an error of `pickle` or OSError if that is impossible."""
+        job = pickle.dumps(self)
         process = subprocess.Popen(
             [sys.executable, "-m", f"{__package__}.compile_loops"],
             stdin=subprocess.PIPE,
@@ -67,7 +68,7 @@ class Compilation(NamedTuple):
         )
         assert process.stdin is not None
         with process.stdin:
-            pickle.dump(self, process.stdin)
+            process.stdin.write(job)
         return process
 
 
@@ -115,7 +116,12 @@ class Handover:
     def _begin(self) -> bool:
         try:
             self._process = self.compilation.begin()
-        except (OSError, pickle.PicklingError):
+        except (
+            OSError,
+            pickle.PicklingError,
+            AttributeError,
+            TypeError,
+        ):  # the last two for a local function
             return False
         return True
 

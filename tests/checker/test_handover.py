@@ -78,6 +78,13 @@ def test_a_compilation_that_cannot_begin_does_not_hold_the_check_up(monkeypatch)
         assert change.is_due()
 
 
+def test_a_check_that_cannot_be_sent_is_compiled_in_this_process(monkeypatch):
+    monkeypatch.setattr(Compilation, "is_done", lambda _: False)
+    with Handover(0.0, job()._replace(properties=(lambda: None,))) as change:
+        assert change.is_due()
+        assert not change.is_waiting
+
+
 def test_the_reference_engine_goes_on_while_loops_are_compiled(monkeypatch):
     monkeypatch.setattr(Compilation, "is_done", lambda _: False)
     mission = load_mission("go_ahead")
