@@ -23,6 +23,9 @@ from physical.shape import MEMO, Geometry, planar
 CHORD: Final = 0.02
 """Metres by which a border may leave its chords."""
 
+ROUND: Final = 32
+"""The least number of corners of a polygon that may stand for a circle."""
+
 MOST_CHORDS: Final = 4_000
 """The largest number of chords of one edge: enough for 1,000 km at any latitude up to 80 degrees."""
 
@@ -102,6 +105,23 @@ def source_area(source: Source) -> GeodesicArea:
     """Return the area of a source."""
     shape = _chords(planar(source) if isinstance(source, Geometry) else _face(source))
     return GeodesicArea(shape, _disc(shape))
+
+
+@lru_cache(maxsize=MEMO)
+def flattening(source: Source) -> float:
+    """Return the metres by which a circle leaves the polygon that stands for it; 0 if a source is no circle.
+
+    A circle is any polygon of many corners that are about as far from its middle; its edges are its chords.
+    """
+    if isinstance(source, FaceCover) or len(source.ring) < ROUND:
+        return 0.0
+    positions = np.array([(east, north) for north, east in source.vertices])
+    disc = source_area(source).disc
+    middles = np.full_like(positions, (disc.longitude, disc.latitude))
+    _, _, metres = geod().inv(*middles.T, *positions.T)
+    if metres.min() < 0.99 * metres.max():
+        return 0.0
+    return float(metres.max()) * (1.0 - math.cos(math.pi / len(positions)))
 
 
 def _face(cover: FaceCover) -> shapely.Geometry:

@@ -8,7 +8,7 @@ from typing import Final, NamedTuple
 import shapely
 
 from physical.frame import geod, rounded
-from physical.geodesic_areas import area_of, disc_of, projected
+from physical.geodesic_areas import area_of, disc_of, flattening, projected
 from physical.geodesic_distances import (
     MOST_KNOWN,
     greatest_distance_of,
@@ -39,7 +39,14 @@ def least_bound(a: RegionPart, b: RegionPart) -> float:
 
 def doubt(a: RegionPart, b: RegionPart) -> float:
     """Return the possible error in metres of figures about two parts."""
-    return 0.0 if _are_points(a, b) else slack(around(disc_of(a), disc_of(b)).radius)
+    if _are_points(a, b):
+        return 0.0
+    return slack(around(disc_of(a), disc_of(b)).radius) + bulge(a) + bulge(b)
+
+
+def bulge(part: RegionPart) -> float:
+    """Return the metres by which the circles among a part's sources leave their polygons."""
+    return max(flattening(source) for source in part.sources)
 
 
 def _are_points(a: RegionPart, b: RegionPart) -> bool:
@@ -113,7 +120,7 @@ def lies_in(a: RegionPart, place: Geometry) -> bool:
     inner, around_it = projected(one, frame), projected(other, frame)
     if not shapely.contains(around_it, inner):
         return False
-    needed = a.margin + slack(reach)
+    needed = a.margin + slack(reach) + bulge(a)
     if shapely.distance(around_it.boundary, inner) >= needed * stretch(reach):
         return True
     return nearest_line(one, other.border).metres >= needed

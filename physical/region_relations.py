@@ -1,7 +1,8 @@
 """The four relations over regions, and the nearest points of two.
 
 In doubt `possibly_in` is true and the others are false. The doubt is less than 0.5 m where both regions lie within 500
-km of their common middle, and less than 5 m within 1,000 km. Places and entities at certain positions compare exactly.
+km of their common middle, and less than 5 m within 1,000 km; a circle, which is drawn as a polygon of 64 corners, adds
+0.12 % of its radius. Places and entities at certain positions compare exactly.
 
 Raises RegionError where two regions reach farther and their bounds do not decide, or where one covers a pole.
 """

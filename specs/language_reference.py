@@ -46,7 +46,8 @@ and `within` ask for regions, in missions with `control timed`. Rules never do: 
   from or to a carrier, the band also has the altitudes of that.
 
 In doubt `possibly` is true, and the other three are false. The doubt is 0.5 m within 500 km of the middle of what is
-compared, and 5 m within 1,000 km. Farther regions, and regions over a pole, are refused. Places, and entities whose
+compared, and 5 m within 1,000 km, and 0.12 % more of the radius of each circle, which is drawn as a polygon of 64
+corners. Farther regions, and regions over a pole, are refused. Places, and entities whose
 position is certain, are compared exactly.
 
 Two vehicles that were sent to one place are not apart, unless their altitudes are: both go to one point.

@@ -13,11 +13,11 @@ from checker.reports.corridors_table import corridors_text
 WGS84 = Geod(ellps="WGS84")
 TABLE = """\
   ways                           length             from tower0
-    uav0 from west0 to east0     6,900 to 7,501 m   867 m
+    uav0 from west0 to east0     6,900 to 7,501 m   866 m
     uav1 from south0 to north0   6,469 to 7,070 m   may cross its border
   vehicles under way together   least distance   where
     uav0, uav1                  may meet         uav0 between west0 and east0, uav1 between south0 and north0
-    uav0, uav1, one at rest     2,874 m          uav0 between west0 and east0, uav1 in north0
+    uav0, uav1, one at rest     2,873 m          uav0 between west0 and east0, uav1 in north0
 """
 MISSION = """\
 signature {

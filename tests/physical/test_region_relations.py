@@ -1,5 +1,7 @@
 """The four relations over regions, and the nearest points of two, one test for each sentence about them."""
 
+import math
+
 import pytest
 
 from physical import (
@@ -28,6 +30,7 @@ from physical import (
     surely_in,
     within,
 )
+from physical.frame import geod
 from physical.place_nesting import Place
 
 WEST, BESIDE = box((37.0, -9.0), (37.05, -8.95)), box((37.0, -8.95), (37.05, -8.9))
@@ -121,6 +124,27 @@ def test_what_may_stray_is_in_a_place_only_if_it_may_stray_no_farther():
     spot = possible_point(flying(middle, margin=to_border + 100), certain(BESIDE))
     assert distance(spot, middle) <= to_border + 100.1
     assert distance(spot, BESIDE) <= 0.1
+
+
+def between_corners(circle_centre, metres):
+    """Return a point at a distance from a centre, half-way between two corners of a circle around it."""
+    north, east = circle_centre
+    to_east, to_north, _ = geod().fwd(east, north, 360 / 64 / 2, metres)
+    return point(to_north, to_east)
+
+
+@pytest.mark.parametrize("radius", [300.0, 1_000.0, 20_000.0])
+def test_a_circle_is_as_large_as_its_radius_between_the_corners_of_its_polygon(radius):
+    centre = (37.1, -8.6)
+    drawn, far = circle(centre, radius), point(37.6, -8.5)
+    lacking = radius * (1 - math.cos(math.pi / 64))
+    just_inside = flying(between_corners(centre, radius - lacking / 4), far)
+    assert distance(between_corners(centre, radius - lacking / 4), drawn) > 0.0
+    assert possibly_in(just_inside, certain(drawn))
+    assert not at_least(just_inside, certain(drawn), 0.1)
+    outside = flying(between_corners(centre, radius + 1.0), far)
+    assert not possibly_in(outside, certain(drawn))
+    assert not surely_in(resting(drawn), certain(polygon(drawn.vertices[::2])))
 
 
 def test_altitudes_meet_at_their_ends():
