@@ -19,6 +19,7 @@ from specs.autopilot_words import called_with_a_unit, ordered
 from specs.building import ANGLES
 from specs.codes import Code
 from specs.diagnostics import Diagnostic
+from specs.distance_mistakes import DISTANCE_MISTAKES
 from specs.foreign_words import ASKED, DONE, foreign_form, foreign_operator, foreign_word, operator_first
 from specs.grammar import (
     PROPERTY_WORDS,
@@ -675,6 +676,7 @@ MISTAKES: Final[tuple[Callable[[ParsePoint], Diagnostic | None], ...]] = (
     misplaced_header,
     equals_of_places,
     single_equals,
+    *DISTANCE_MISTAKES,
     *TIMING_MISTAKES,
     flown,
     hyphenated,

@@ -11,7 +11,12 @@ from bigactors.terminal import say
 DESCRIPTION: Final = """\
 Print the meaning of a diagnostic code or of a word of a report, and the remedy."""
 
-EXAMPLES: Final = ("bigactors explain LS201", "bigactors explain stale-observation race", "bigactors explain")
+EXAMPLES: Final = (
+    "bigactors explain LS201",
+    "bigactors explain LS704 LS709",
+    "bigactors explain stale-observation race",
+    "bigactors explain",
+)
 
 
 def add_arguments(parser: Parser) -> None:
@@ -20,7 +25,7 @@ def add_arguments(parser: Parser) -> None:
         "code",
         nargs="*",
         metavar="CODE",
-        help="a code such as LS201, or a word of a report such as stale-observation (default: list all)",
+        help="codes such as LS201, or a word of a report such as stale-observation (default: list all)",
     )
 
 
@@ -36,15 +41,17 @@ def run(options: Namespace) -> Exit:
         say(f"\nwords of reports: {', '.join(ALL)}")
         say("\nbigactors explain CODE, or a word, explains each")
         return Exit.HOLDS
-    asked = " ".join(options.code)
-    found, word = find_code(asked), find_word(asked)
-    if found is not None:
-        say(explain(found).rstrip())
-    elif word is not None:
-        say(f"{word[0]}\n\n{word[1]}")
-    else:
-        hint = did_you_mean(asked, ALL)
-        raise Mistake(
-            f"there is no code and no word '{asked:.40}'", hint or "bigactors explain lists them all"
-        )
+    together = " ".join(options.code)
+    asked = options.code if all(map(find_code, options.code)) else [together]
+    for each in asked:
+        found, word = find_code(each), find_word(each)
+        if found is not None:
+            say(explain(found).rstrip() + ("\n" if each is not asked[-1] else ""))
+        elif word is not None:
+            say(f"{word[0]}\n\n{word[1]}")
+        else:
+            hint = did_you_mean(each, ALL)
+            raise Mistake(
+                f"there is no code and no word '{each:.40}'", hint or "bigactors explain lists them all"
+            )
     return Exit.HOLDS

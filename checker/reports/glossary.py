@@ -107,6 +107,18 @@ WORDS: Final[Mapping[str, str]] = {
         A message on its way: it is delivered when both hosts are one node or share a link, in L and
         in P.""",
     "MGR": "A bigActor that wants to move to another host: `migrate` serves it where the hosts are linked.",
+    "possibly": """
+    `possibly uav0 in place0`: somewhere on its way, or at rest, uav0 may be in place0. To stay out is `not possibly
+    uav0 in place0`. In doubt it is true.""",
+    "surely": """
+    `surely uav0 in place0`: uav0 is in place0 wherever it may be on its way, or at rest. In doubt it is false.""",
+    "at least": """
+    `uav0 at least 50 m from uav1`: they are never nearer, wherever they may be. In doubt it is false.""",
+    "region": """
+    All points and altitudes where an entity may be while a configuration lasts. `possibly`, `surely`, `at least` and
+    `within` are decided on regions.""",
+    "strays": """
+        `UAV strays at most 30 m`: the farthest that a vehicle is from the shortest lines between its waypoints.""",
     "redex": """
         The left side of a control's reaction rule: its precondition. The right side, the reactum, is its effect.""",
 }
@@ -140,7 +152,8 @@ PROPERTIES: Final[Mapping[str, str]] = {
     "progress": "Every request is served in every fair run. Otherwise there is an *unserved request*.",
     "within": """
     A proposition becomes true in time on every run, counted from the start: `within 40 min "name": formula`. With `F
-    leads to G`, G follows in time whenever F is true. All bounds of `timing` are assumptions of the verdict.""",
+    leads to G`, G follows in time whenever F is true. All bounds of `timing` are assumptions of the verdict.
+    Between names it compares distances: `uav0 within 3 km of gcs0`.""",
     "endurance": """
     No vehicle is ever away from its place of restoration for longer than it lasts, by the bounds of the section
     `timing`.""",

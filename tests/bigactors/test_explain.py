@@ -28,6 +28,8 @@ def test_without_a_code_all_are_listed(bigactors):
         (["Inconsistent"], "inconsistent"),
         (["by", "ownership"], "by ownership"),
         (["unserved", "OBS"], "unserved request"),
+        (["possibly"], "possibly"),
+        (["at", "least"], "at least"),
     ],
 )
 def test_a_word_of_a_report_is_explained(done, asked, first):
@@ -38,3 +40,8 @@ def test_a_rule_is_explained_with_its_bar(bigactors):
     _, out, _ = bigactors("explain", "sense")
     assert "OBS(a, q) ∈ η, in line" in out
     assert "───" in out
+
+
+def test_several_codes_are_explained_one_after_another(done):
+    shown = done("explain", "LS704", "LS709")
+    assert shown.index("LS704: ") < shown.index("\n\nLS709: ")

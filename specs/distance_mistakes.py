@@ -1,0 +1,102 @@
+"""Common mistakes in claims about places and distances: `uav0 at most 3 km from gcs0`."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Final
+
+from specs.codes import Code
+from specs.diagnostics import Diagnostic
+from specs.parse_error import ParsePoint, word_at, word_before
+
+_NEARER: Final = frozenset({"less", "nearer", "closer", "below", "under"})
+_FARTHER: Final = frozenset({"more", "farther", "further", "over", "above", "beyond"})
+_METRES: Final[Mapping[str, float]] = {
+    **dict.fromkeys(("NM", "nm", "nmi", "Nm"), 1852.0),
+    **dict.fromkeys(("ft", "feet", "foot"), 0.3048),
+    **dict.fromkeys(("mi", "mile", "miles"), 1609.344),
+    **dict.fromkeys(("yd", "yards"), 0.9144),
+    **dict.fromkeys(("metre", "metres", "meter", "meters", "M"), 1.0),
+    **dict.fromkeys(("kilometre", "kilometres", "kilometer", "kilometers", "KM", "Km"), 1000.0),
+}
+"""The metres of the units that the language does not have."""
+
+
+def foreign_length(at: ParsePoint) -> Diagnostic | None:
+    """`at least 2 NM from uav1`, `altitude 400 ft`."""
+    if not {"m", "km"} <= at.accepted or at.found.text not in _METRES or not at.before.is_number:
+        return None
+    metres = float(at.before.text) * _METRES[at.found.text]
+    message = f"lengths are in m or km, found {at.found.shown}"
+    return at.mistake(Code.MISSING_UNIT, message, f"write {metres:.10g} m")
+
+
+def distance_bound(at: ParsePoint) -> Diagnostic | None:
+    """`uav0 at most 25 km from west0`, `uav0 less than 2 km from west0`, `uav0 nearer than 50 m to uav1`."""
+    most = at.accepted == {"least"} and at.found.text in ("most", "maximum", "max")
+    claimed = {"directly", "linked"} <= at.accepted
+    if not most and not (claimed and at.found.text in _NEARER | _FARTHER):
+        return None
+    who = word_before(at.prepared.text, at.before.span.start) if most else at.before
+    number = at.following
+    if number.text == "than":
+        number = word_at(at.prepared.text, number.span.end)
+    unit = word_at(at.prepared.text, number.span.end).text
+    if not number.is_number or unit not in ("m", "km", *_METRES):
+        return None
+    length = (
+        f"{number.text} {unit}" if unit in ("m", "km") else f"{float(number.text) * _METRES[unit]:.10g} m"
+    )
+    other = word_at(at.prepared.text, _behind(at, number.span.end, 3)).text or "place0"
+    if at.found.text in _FARTHER:
+        hint = f"write {who.text} at least {length} from {other}"
+    else:
+        hint = f"write {who.text} within {length} of {other}"
+    return at.mistake(Code.UNEXPECTED, "distances are compared by 'within' and 'at least'", hint)
+
+
+def _behind(at: ParsePoint, start: int, words: int) -> int:
+    """Return the start of the last of some words behind an offset."""
+    for _ in range(words - 1):
+        start = word_at(at.prepared.text, start).span.end
+    return start
+
+
+def spare_away(at: ParsePoint) -> Diagnostic | None:
+    """`uav0 at least 2 km away from west0`."""
+    if at.found.text == "away" and at.accepted == {"from", "or"}:
+        return at.mistake(Code.UNEXPECTED, "expected 'from', found 'away'", "leave it out")
+    return None
+
+
+def negated_place(at: ParsePoint) -> Diagnostic | None:
+    """`uav0 not in west0`, `possibly uav0 not in west0`."""
+    inside = at.found.text == "not" and at.following.text == "in" and "in" in at.accepted
+    if not inside or at.in_expression:
+        return None
+    modal = word_before(at.prepared.text, at.before.span.start).text
+    place = word_at(at.prepared.text, at.following.span.end).text
+    claim = f"{at.before.text} in {place}"
+    if modal in ("possibly", "surely"):
+        hint = f"write not possibly {claim}: it never is; or not surely {claim}: it may be elsewhere"
+    else:
+        hint = f"write not {modal + ' ' if modal in ('actually', 'believed') else ''}{claim}"
+    return at.mistake(Code.UNEXPECTED, "'not' stands before the whole claim", hint)
+
+
+def late_deadline(at: ParsePoint) -> Diagnostic | None:
+    """`invariant "r": within 5 min uav0 in east0`: read as the claim of an entity `within`."""
+    if at.before.text != "within" or not at.found.is_number or not {"directly", "linked"} <= at.accepted:
+        return None
+    unit = at.following.text
+    hint = f'a deadline is a property: within {at.found.text} {unit} "name": formula'
+    return Diagnostic(Code.UNEXPECTED, at.before.span, "'within' and a duration begin no formula", hint)
+
+
+DISTANCE_MISTAKES: Final[tuple[Callable[[ParsePoint], Diagnostic | None], ...]] = (
+    foreign_length,
+    distance_bound,
+    spare_away,
+    negated_place,
+    late_deadline,
+)

@@ -1,0 +1,42 @@
+"""Mistakes that a newcomer makes in claims about places and distances, and the remedy of each."""
+
+import pytest
+from elaborating import shown
+from text_tables import rows
+
+SHORE = """signature {
+  kind Bay contains Boat
+  kind Boat driven
+}
+world {
+  bay0: Bay = circle (37.1, -8.64) radius 300 m
+  bay1: Bay = circle (37.1, -8.56) radius 300 m
+  boat0: Boat = point (37.1, -8.641)
+}
+BigActor sailor hosted_at boat0 with_behavior {
+  control(MOVE_HOST_TO bay1)
+}
+environment { boat0 arrives }
+control timed
+check {
+  invariant "near": CLAIM
+}
+"""
+CLAIMS = r"""
+boat0 at most 25 km from bay0  # most | write boat0 within 25 km of bay0
+boat0 less than 2 km from bay0  # less | write boat0 within 2 km of bay0
+boat0 closer than 2 NM to bay0  # closer | write boat0 within 3704 m of bay0
+boat0 farther than 2 km from bay0  # farther | write boat0 at least 2 km from bay0
+boat0 at least 2 km away from bay0  # away | leave it out
+boat0 at least 500 ft from bay0  # ft | write 152.4 m
+boat0 not in bay0  # not | write not boat0 in bay0
+actually boat0 not in bay0  # not | write not actually boat0 in bay0
+possibly boat0 not in bay0
+    # not | write not possibly boat0 in bay0: it never is; or not surely boat0 in bay0: it may be elsewhere
+within 5 min boat0 in bay1  # within | a deadline is a property: within 5 min "name": formula
+"""
+
+
+@pytest.mark.parametrize(("claim", "remedy"), list(rows(CLAIMS)))
+def test_a_mistake_is_marked_at_its_word_with_its_remedy(claim, remedy):
+    assert [f"{place} | {hint}" for place, _, hint in shown(SHORE.replace("CLAIM", claim))] == [remedy]
