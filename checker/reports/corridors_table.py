@@ -50,9 +50,9 @@ def flight_rows(found: Corridors) -> Iterator[Row]:
         for leg in flight.legs:
             yield _row(f"    {leg.origin} to {leg.to}", leg, shown)
     left = len(found.flights) - MOST_ROWS, len(found.places) - len(shown)
-    for count, what in zip(left, ("flights", "places, which no flight comes nearer to"), strict=True):
+    for count, what in zip(left, ("on the list of flights", "on the list of places, farther from all flights"), strict=True):
         if count > 0:
-            yield (f"  and {count:,} more {what}: see --json", *[""] * (1 + len(shown)))
+            yield (f"  {count:,} more {what}: see --json", *[""] * (1 + len(shown)))
 
 
 def _so_far(found: Corridors) -> str:
