@@ -92,7 +92,7 @@ timing {{
 }}
 check {{
   invariant "conforms": surely uav0 in intent0 and surely uav1 in intent1
-  invariant "apart": uav0 at least 50 m or 30 m up from uav1
+  invariant "apart": uav0 at least 100 m or 30 m up from uav1
   within 8 min "first is over": actually uav0 in west0
   within {second.end} s "second is over": actually uav1 in north1
 }}
