@@ -527,6 +527,13 @@ class Code(Enum):
         """`possibly`, `surely`, `at least` and `within` are about ways, and with `control atomic` nothing is under way.
         Write `control timed`.""",
     )
+
+    TOO_MANY_MISSED = (
+        "LS619",
+        "too many entities to miss",
+        """An observation may miss any of the entities in view that `observe may miss` names, so each of them doubles
+        its answers. The clauses of a mission may name at most eight entities.""",
+    )
     # --- LS7: warnings
     NOTHING_QUANTIFIED = (
         "LS701",
