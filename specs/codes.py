@@ -597,7 +597,8 @@ class Code(Enum):
     MAY_CROSS = (
         "LS709",
         "flight that may cross a forbidden place",
-        """An invariant keeps a vehicle out of a place, and the straight way of one of its flights may lead through it.
+        """An invariant keeps a vehicle, or what it may carry, out of a place, and the straight way of one of its
+        flights may lead through it.
         `actually` does not cover a vehicle in transit: ask for `not possibly uav0 in place0`. Or lead the flight around
         by VIA, or in several moves.""",
     )
