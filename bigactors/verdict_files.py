@@ -93,7 +93,7 @@ def parts_of(mission: ElaboratedMission) -> dict[str, str]:
         "text": digest(mission.source.text),
         "places": digest(places),
         "entities": digest((entities, moving, setting.signature.kinds)),
-        "environment": digest((setting.environment, setting.arriving)),
+        "environment": digest((setting.environment, setting.arriving, setting.missable)),
     }
 
 

@@ -57,7 +57,7 @@ def rows(found: Exploration) -> Iterator[TransitionRow]:
             label.about, Received
         ):  # rows do not hold received observations
             label = step_of(configurations[source], label, configurations[target]).label
-        yield TransitionRow(int(source), int(target), label.rule, label.agent, str(label.about), str(label))
+        yield TransitionRow(int(source), int(target), label.rule, label.agent, label.details, str(label))
 
 
 def _graph(found: Exploration) -> Graph:

@@ -355,6 +355,13 @@ def environments(draw: st.DrawFn, world: World) -> tuple[Clause, ...]:
     return tuple(draw(st.lists(st.one_of(clauses), max_size=2, unique_by=_subject)))
 
 
+@st.composite
+def _missable(draw: st.DrawFn, world: World) -> tuple[Name, ...]:
+    """Yield at most two entities that an observation may miss."""
+    names = sorted(world.kinds)
+    return tuple(sorted({pick(draw, names), pick(draw, names)}))
+
+
 def _subject(clause: Clause) -> tuple[str, object]:
     return (type(clause).__name__, clause.number if isinstance(clause, Says) else "")
 
@@ -373,6 +380,7 @@ def initial_configurations(
     controls: Sequence[Control] = tuple(Control),
     monitored: bool | None = False,
     lagging: bool | None = None,
+    misses: bool | None = None,
 ) -> Configuration:
     """Yield initial configurations with programs, an environment, and any scheduler and control.
 
@@ -384,6 +392,7 @@ def initial_configurations(
         controls: The controls to draw from.
         monitored: Whether the race monitor is on; both if None.
         lagging: Whether L₀ may differ from A(P₀); both if None.
+        misses: Whether observations may miss entities; both if None.
     """
     world = draw(worlds())
     number = draw(st.integers(1, 2))
@@ -394,6 +403,7 @@ def initial_configurations(
         scheduler=pick(draw, schedulers),
         control=pick(draw, controls),
         monitored=pick(draw, [False, True]) if monitored is None else monitored,
+        missable=draw(_missable(world)) if misses or (misses is None and pick(draw, range(3)) == 2) else (),
     )
     lags = pick(draw, [False, False, True]) if lagging is None else lagging
     return world.initial(setting, agents, draw(beliefs(world)) if lags else None)

@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterator
 from semantics.behaviours.computation import compute, enter_case
 from semantics.behaviours.expressions import evaluated, name_in, query_of
 from semantics.behaviours.process_conversion import continuing, next_statement, process_of, resting_on
-from semantics.behaviours.queries import answers, overlay, resolve
+from semantics.behaviours.queries import overlay, resolve, sights
 from semantics.behaviours.reaction_rules import Reaction, in_flight
 from semantics.behaviours.statements import ControlBy, Observe, React, at_internal
 from semantics.control import Realisation, commits, realisations
@@ -59,21 +59,30 @@ def req_obs(c: Configuration, a: Name) -> Iterator[Transition]:
 def sense(c: Configuration, a: Name) -> Iterator[Transition]:
     """Observe: evaluate the query over the physical structure; L and P become locally consistent there.
 
-    OBS(a, q) ∈ η, in line      L_q = q(A(P))
+    OBS(a, q) ∈ η, in line      L_q = q(A(P ∖ M)), M entities that the mission lets a miss
     ───────────────────────────────────────────────────────────────────────────────  ⟨sense : OBS(a, q)⟩
     ⟨α | (L, P, β, γ) | η⟩  →  ⟨α | (L ⊕ L_q, P, β, γ) | η[OBS(a, q) ↦ READY(a, q, L_q)]⟩
     """
     for pending in c.eta.in_line(a):
         if not isinstance(pending.request, OBS):  # premise: OBS(a, q) ∈ η, in line
             continue
-        query = pending.request.query
-        steps = resolve(query, c.structure.physical, c.alpha)
-        seen = answers(steps, c.structure.physical, c.alpha)  # premise: L_q = q(A(P))
-        looked = Dependency(query, steps, computed=True)
-        rests_on = pending.rests_on | {looked} if c.setting.monitored else NOTHING
-        ready = c.eta.replacing(pending, READY(a, query, seen), rests_on)
-        target = c.with_(ready).with_each(overlay(c.structure.logical, seen))
-        yield Transition(Label("sense", a, pending.request), target, served=pending)
+        query, physical, rests_on = pending.request.query, c.structure.physical, NOTHING
+        if c.setting.monitored:  # a race is about q(A(P)): the world's answer, whatever a sensor misses
+            looked = Dependency(query, resolve(query, physical, c.alpha), computed=True)
+            rests_on = pending.rests_on | {looked}
+        for missed, seen in sights(query, physical, c.alpha, missable(c, a)):  # premise: L_q = q(A(P ∖ M))
+            ready = c.eta.replacing(pending, READY(a, query, seen), rests_on)
+            target = c.with_(ready).with_each(overlay(c.structure.logical, seen))
+            yield Transition(Label("sense", a, pending.request, missed), target, served=pending)
+
+
+def missable(c: Configuration, a: Name) -> tuple[Name, ...]:
+    """Return the entities that an agent's observation may miss: never its own host, nor what carries that."""
+    if not c.setting.missable:
+        return ()
+    host = c.alpha.host(a)
+    own = {host, *c.structure.physical.carriers(host)}
+    return tuple(name for name in c.setting.missable if name not in own)
 
 
 def rcv_obs(c: Configuration, a: Name) -> Iterator[Transition]:

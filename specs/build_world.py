@@ -176,6 +176,9 @@ class BuildWorld(BuildTiming):
     def strays(self, c: Children) -> s.Strays:
         return s.Strays(name(c[0]), c[4], span=cover(c))
 
+    def misses(self, c: Children) -> s.Misses:
+        return s.Misses(names(c[3:]), span=cover(c))
+
     def place_name(self, c: Children) -> s.Name:
         return name(c[0])
 

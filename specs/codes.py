@@ -527,6 +527,13 @@ class Code(Enum):
         """`possibly`, `surely`, `at least` and `within` are about ways, and with `control atomic` nothing is under way.
         Write `control timed`.""",
     )
+
+    TOO_MANY_MISSED = (
+        "LS619",
+        "too many entities to miss",
+        """An observation may miss any of the entities in view that `observe may miss` names, so each of them doubles
+        its answers. The clauses of a mission may name at most eight entities.""",
+    )
     # --- LS7: warnings
     NOTHING_QUANTIFIED = (
         "LS701",
@@ -590,7 +597,8 @@ class Code(Enum):
     MAY_CROSS = (
         "LS709",
         "flight that may cross a forbidden place",
-        """An invariant keeps a vehicle out of a place, and the straight way of one of its flights may lead through it.
+        """An invariant keeps a vehicle, or what it may carry, out of a place, and the straight way of one of its
+        flights may lead through it.
         `actually` does not cover a vehicle in transit: ask for `not possibly uav0 in place0`. Or lead the flight around
         by VIA, or in several moves.""",
     )

@@ -238,6 +238,8 @@ def foreign_form(at: ParsePoint) -> Diagnostic | None:
     hint = ""
     if at.at_expression and at.found.text in ("observe", "react"):
         hint = "a react receives the observation: observe(HOST) react { case obs: Observation => ... }"
+    elif at.at_expression and at.found.text == "after":  # match { after 10 s => ... }
+        hint = "only a react waits: react { case obs: Observation => ... after 10 s => ... }"
     elif "to" in at.accepted and at.in_expression and at.found.text in ("->", "→", "=>"):
         hint = _SEND
     elif at.found.text == "(" and at.before.text in ("for", "choose") and at.sorts == {"NAME"}:

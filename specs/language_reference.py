@@ -53,6 +53,23 @@ position is certain, are compared exactly.
 Two vehicles that were sent to one place are not apart, unless their altitudes are: both go to one point.
 """
 
+MISSES: Final = """\
+## Observations that miss
+
+A sensor may fail to see what is there. With `observe may miss OilSpill` each observation has one answer for each set of
+spills that it may leave out: `sense` is a choice among them. The trace says which was taken: `missing oilSpill0`.
+
+- The answer is that of a world from which the missed entities have vanished with their cargo: L_q = q(A(P ∖ M)). So a
+  missed entity is not shown, `L ⊕ L_q` sends it to the region if it was believed in a searched place, and what is in a
+  missed place is seen in the place around that.
+- Only entities that the answer would show are missed: one observation of n of them has 2ⁿ answers. A mission may name
+  eight entities (LS619).
+- No agent misses its own host, or what carries that. `HOSTED_AT` alone misses no agent.
+- What an observation shows is there. Nothing bounds how often one entity is missed, and no fairness ends it: a mission
+  that waits until it sees something may wait for ever, and one that takes a miss for a proof is wrong.
+- Every observer may miss the entity. A race is about the world's answer: a miss by itself makes no test stale.
+"""
+
 PLACES: Final = """\
 ## A file of places
 
@@ -261,7 +278,7 @@ def language_reference() -> str:
         if heading == "Timing":
             parts += [f"Example:\n\n<!-- frame: {TIMED_FRAME} -->", _fenced(TIMED_EXAMPLE, "mission")]
         if heading == "Formulas":
-            parts += [REGIONS]
+            parts += [REGIONS, MISSES]
         if heading in EXAMPLES:
             parts += ["Example:\n", "<!-- frame: whole.mission -->", _fenced(EXAMPLES[heading], "mission")]
     reserved = ", ".join(f"`{word}`" for word in sorted(RESERVED))

@@ -342,6 +342,7 @@ _PIECES: Final[dict[type[s.Node], Callable[..., list[str]]]] = {
     s.Says: _says,
     s.Arrives: lambda node: [f"{write(node.entity)} arrives"],
     s.Strays: lambda node: [f"{write(node.vehicle)} strays at most {write(node.distance)}"],
+    s.Misses: lambda node: separated("observe may miss", node.entities),
     **TIMING_PIECES,
     s.OnBroken: lambda node: [f"on broken {node.what}: {node.fallback}"],
     s.TimeLimit: lambda node: [_time_limit(node)],

@@ -96,7 +96,7 @@ class ParsePoint:
     @property
     def at_statement(self) -> bool:
         """Whether a statement may begin here."""
-        return "observe" in self.accepted
+        return "skip" in self.accepted
 
     @property
     def at_declaration(self) -> bool:

@@ -27,7 +27,7 @@ _STANDARD: Final = frozenset(map(str, NAMED_PROPERTIES))
 _HAPPENINGS: Final = frozenset(["appears", "arrives", "drifts", "leaves", "vanishes"])
 _TAKING: Final = _HAPPENINGS | {"flies", "lasts", "within", "take", "takes"}
 _GROUPS: Final[tuple[tuple[str, str, frozenset[str], frozenset[str]], ...]] = (
-    ("observe", "a statement", STATEMENTS, frozenset({"NAME"})),
+    ("skip", "a statement", STATEMENTS, frozenset({"NAME"})),
     ("signature", "a declaration", SECTIONS | {"control"}, frozenset()),
     ("SELF", "an expression", _EXPRESSION, frozenset({"NAME", "STRING", "NUMBER"})),
     ("actually", "a formula", _FORMULA, frozenset({"NAME"})),

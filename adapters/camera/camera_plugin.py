@@ -1,7 +1,7 @@
 """The camera plugin: finds regions in the frames of a camera in flight, tracks them, and publishes them.
 
 A thread decodes, searches and merges the frames, one after the other: the run never waits for it. A region is published
-once its whole border was in view, under a name that it keeps.
+once its whole border was in view, under a name that it keeps, and withdrawn once most frames contradict it.
 """
 
 from __future__ import annotations
@@ -9,7 +9,7 @@ from __future__ import annotations
 import asyncio
 from collections import deque
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Final, TypeVar
 
@@ -22,7 +22,7 @@ from adapters.camera.sources import Shot, Source
 from adapters.camera.votes import Region, share
 from adapters.listening_plugin import Feed
 from adapters.naming import NameClash, NamingService
-from adapters.plugin import Aged, World
+from adapters.plugin import Aged, Gone, World
 from adapters.trouble_throttle import Troubles
 from physical import Geometry, PhysicalError, PhysicalProperty
 
@@ -38,7 +38,7 @@ MOST_WAITING: Final = 20
 """The most frames that wait for their pose or the search: the newest."""
 
 SURE: Final = 0.3
-"""The least confidence of a published region."""
+"""The least confidence of a published region; below it a published one is withdrawn."""
 
 SAME: Final = 0.9
 """The least overlap (intersection over union) of two outlines at which the first one stays published."""
@@ -80,10 +80,12 @@ class Camera:
 
 @dataclass(frozen=True, slots=True)
 class PublishedRegion:
-    """One region: its last published outline, and the time of that."""
+    """One region: its last published outline, its entity, the time of that, and whether it was then withdrawn."""
 
     geometry: Geometry
+    entity: str
     time: float
+    withdrawn: bool = False
 
 
 class CameraFeed(Feed):
@@ -186,15 +188,18 @@ class CameraFeed(Feed):
         """Publish the complete regions of sufficient confidence: again only if they change, or their time runs out."""
         now = world.now()
         for region in found:
-            if not region.whole or region.confidence < SURE:
+            if not region.whole:
                 continue
             name = self._name_of(region.geometry)
             before = self._known.get(name)
+            if region.confidence < SURE:
+                self._withdraw(world, name, now)
+                continue
             geometry = region.geometry
             if before is not None and now - before.time < SETTLES:
                 continue
             if before is not None and share(before.geometry, geometry) >= SAME:
-                if now - before.time < AGAIN * self._time_to_live:
+                if not before.withdrawn and now - before.time < AGAIN * self._time_to_live:
                     continue
                 geometry = before.geometry
             try:
@@ -202,9 +207,16 @@ class CameraFeed(Feed):
             except NameClash as problem:
                 self._troubles.note("detection refused", str(problem))
                 continue
-            self._known[name] = PublishedRegion(geometry, now)
+            self._known[name] = PublishedRegion(geometry, entity, now)
             seen_at = PhysicalProperty(entity, self._camera.kind, geometry, time=now, source=self.name)
             world.publish(Aged(seen_at, self._time_to_live))
+
+    def _withdraw(self, world: World, name: str, now: float) -> None:
+        """Take back a published region: the frames since have made it doubtful."""
+        before = self._known.get(name)
+        if before is not None and not before.withdrawn:
+            self._known[name] = replace(before, time=now, withdrawn=True)
+            world.publish(Gone(before.entity, now, self.name))
 
     def _name_of(self, geometry: Geometry) -> str:
         """Return the name of the known region that this one continues, else a new name."""

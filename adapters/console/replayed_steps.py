@@ -52,7 +52,7 @@ def take_step(draft: Draft, time: float, data: Any) -> None:
         "label": text(label),
         "rule": text(rule),
         "agent": None if found is None else found.agent,
-        "about": text(label.partition(" : ")[2].removesuffix("⟩") if found is None else str(found.about)),
+        "about": text(label.partition(" : ")[2].removesuffix("⟩") if found is None else found.details),
         "changes": changed,
         "shown": shown,
         "told": told,

@@ -49,6 +49,15 @@ def broken_by_place(
     return f"{where}; the mission does not let it drift, and it was not sent there"
 
 
+def is_missed(plan: Plan, entity: Name) -> bool:
+    """Return whether an entity that is not seen any more is missed: the mission lets no other thing explain it.
+
+    A vehicle is heard, not seen by a sensor.
+    """
+    missable = entity in plan.first.setting.missable and entity not in plan.vehicles
+    return missable and _clause(plan, Vanishes, entity) is None
+
+
 def _broken_by_appearing(plan: Plan, c: Configuration, entity: Name, now: Relations) -> str:
     where = ", ".join(sorted(now[0])) or "none of the places"
     clause = _clause(plan, Appears, entity)

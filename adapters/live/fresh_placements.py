@@ -40,6 +40,7 @@ class Sightings:
         expires: Time at which the first sighting becomes too old.
         lost: Vehicles whose link is lost.
         missing: Cells of P whose removal broke an assumption, with their values: their return breaks no other.
+        unseen: Entities that are no longer seen, and that an observation may miss: they stay in P.
         admitted: The number of strangers admitted from each plugin, and of those that are places.
     """
 
@@ -47,6 +48,7 @@ class Sightings:
     expires: float = math.inf
     lost: frozenset[Name] = frozenset()
     missing: Mapping[Cell, object] = field(default_factory=dict)
+    unseen: frozenset[Name] = frozenset()
     admitted: Mapping[str, tuple[int, int]] = field(default_factory=dict)
 
     def with_newest(self, found: Mapping[Name, Sighting]) -> Sightings:
@@ -54,7 +56,8 @@ class Sightings:
         if not found:
             return self
         expires = min(self.expires, *(each.until for each in found.values()))
-        return replace(self, newest={**self.newest, **found}, expires=expires)
+        newest = {**self.newest, **found}
+        return replace(self, newest=newest, expires=expires, unseen=self.unseen.difference(found))
 
     def expired(self, now: float) -> frozenset[Name]:
         """Return the entities whose sighting is too old."""
@@ -65,6 +68,10 @@ class Sightings:
         newest = {name: each for name, each in self.newest.items() if name not in entities}
         expires = min((each.until for each in newest.values()), default=math.inf)
         return replace(self, newest=newest, expires=expires)
+
+    def unseeing(self, entity: Name) -> Sightings:
+        """Return the value in which an entity is no longer seen, and observations miss it."""
+        return replace(self, unseen=self.unseen | {entity})
 
     def losing(self, entity: Name) -> Sightings:
         """Return the value in which the link to a vehicle is lost."""

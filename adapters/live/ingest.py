@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import assert_never
 
-from adapters.live.assumptions import STRAYED, broken_by_place, clause_of_leaving, relations
+from adapters.live.assumptions import STRAYED, broken_by_place, clause_of_leaving, is_missed, relations
 from adapters.live.batch import Batch, Heard
 from adapters.live.command_planning import is_authority
 from adapters.live.fallbacks import answers_for, breaks, flies_home
@@ -187,6 +187,9 @@ def _expire(turning: Turning) -> None:
 
 
 def _vanish(turning: Turning, entity: Name) -> None:
+    if is_missed(turning.plan, entity):
+        turning.sightings = turning.sightings.unseeing(entity)
+        return
     broken = broken_by_place(turning.plan, turning.c, entity, None)
     gone = sorted({entity, *turning.c.structure.physical.cargo(entity)})
     writes: dict[Cell, object] = {placement_cell(name): None for name in gone}

@@ -40,7 +40,8 @@ def _service(turning: Turning, pending: PendingRequest) -> Service:
     request = pending.request
     found = served(turning.c, pending)
     if not isinstance(request, CTR):
-        return found, False
+        unseen = turning.sightings.unseen  # each answer misses more entities than those before
+        return tuple(each for each in reversed(found) if unseen.issuperset(each.label.missed)), False
     if turning.overrides.stops(request.agent):
         return (), False
     if not found:

@@ -68,6 +68,14 @@ def seconds(text: str) -> float:
     return value
 
 
+def times(text: str) -> float:
+    """Return a factor from 0.1 to 1000."""
+    value = _number(text)
+    if value is None or not 0.1 <= value <= 1000:
+        raise argparse.ArgumentTypeError(f"'{text:.40}' is not a number from 0.1 to 1000")
+    return value
+
+
 def time_of(text: str) -> float:
     """Return a time in seconds since 1970; a time without a zone is UTC.
 

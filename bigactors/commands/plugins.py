@@ -31,6 +31,10 @@ OURS: tuple[tuple[str, str], ...] = (
     ("--vehicle NAME=tcpin:[HOST:]PORT", "a vehicle that speaks MAVLink, by a connection from it"),
     ("--vehicle NAME=serial:DEVICE[:BAUD]", "a vehicle that speaks MAVLink, by a serial line"),
     ("--vehicle NAME=ros:tcp:HOST:PORT", "a robot of ROS 2, by the Zenoh router of rmw_zenoh"),
+    (
+        "--vehicle NAME=simulated:KIND",
+        "a simulated plane, copter, rover, boat, px4-plane or px4-copter",
+    ),
     ("--feed ais=ADDRESS", "vessels, by AIS"),
     ("--feed detections=http:[HOST:]PORT", "detections of others, by HTTP, or folder:PATH"),
     ("--feed locations=URL", "positions from a location service"),

@@ -53,6 +53,7 @@ NAMES_BEHIND: Final[Mapping[str, tuple[str, ...]]] = {
     "taken": ("agent", "step"),
     "enabled": ("agent", "step"),
     "observe": (*_ENTITIES, "variable"),
+    "miss": ("entity", "kind"),
     "control": ("rule",),
 }
 """The sorts of names that may follow a word, directly or later in its construct."""
@@ -162,7 +163,7 @@ def _sorts(expected: Expected, words: list[str]) -> tuple[str, ...]:
     if "SELF" in expected.words:
         command = any(word in COMMAND_WORDS for word in words[_last(words, "control") :])
         return ("variable", "agent") if last == "to" else ("variable", "entity") if command else _VALUES
-    if "observe" in expected.words:
+    if "skip" in expected.words:  # a statement may begin
         return ("behaviour", "variable")
     if "actually" in expected.words:
         return (*_CLAIMS, "variable")

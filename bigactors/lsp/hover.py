@@ -33,6 +33,7 @@ SERVED_BY: Final[Mapping[type[s.Node], tuple[Callable[..., Any], ...]]] = {
     s.Migrate: (bigactor_rules.req_mgr, bigactor_rules.migrate),
     s.Spawn: (bigactor_rules.spawn,),
     s.Says: (bigactor_rules.say,),
+    s.Misses: (rules.sense,),
     **dict.fromkeys(
         (s.Display, s.Let, s.Assign, s.If, s.Loop, s.While, s.For, s.Match, s.Call), (rules.fun,)
     ),

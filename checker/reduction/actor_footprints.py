@@ -221,7 +221,7 @@ class Actors:
     def _serve(self, agent: Name, request: Request, hosts: Iterable[Name]) -> SlotFootprint:
         match request:
             case OBS(_, query):
-                return self.footprints.sense(query) | self.footprints.telling(agent)
+                return self.footprints.sense(agent, hosts, query) | self.footprints.telling(agent)
             case CTR(_, reaction) | FLY(_, reaction, _):
                 return self._of_reaction(agent, reaction)
             case SND(_, to, message):
@@ -241,7 +241,8 @@ class Actors:
         hosts = self.roles[agent].hosts
         match statement:
             case Observe(query):
-                return self.footprints.sense(self.roles.query(agent, query)) | self.footprints.telling(agent)
+                asked = self.roles.query(agent, query)
+                return self.footprints.sense(agent, hosts, asked) | self.footprints.telling(agent)
             case ControlBy():
                 return self._control(agent, statement)
             case Send(message, to):

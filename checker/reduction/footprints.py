@@ -73,13 +73,25 @@ class Footprints:
 
     # --- rules ------------------------------------------------------------------------------------------------
 
-    def sense(self, query: Query) -> SlotFootprint:
-        """Bound `sense`: the reads of a query, and its changes to L ⊕ L_q."""
+    def sense(self, agent: Name, hosts: Iterable[Name], query: Query) -> SlotFootprint:
+        """Bound `sense`: the answers of a query, and the entities that may be missed."""
+        return self.look(query) | self._missing(agent, hosts)
+
+    def look(self, query: Query) -> SlotFootprint:
+        """Bound the reads of a query, and its changes to L ⊕ L_q."""
         looking = _Looking(self, query)
         merges = looking.merges & ~self.settled
         cyclic = self.slots.of("parent", self.bounds.cyclic)
         breaking = cyclic if merges & cyclic else 0
         return SlotFootprint(looking.reads | breaking, breaking, merges & ~breaking)
+
+    def _missing(self, agent: Name, hosts: Iterable[Name]) -> SlotFootprint:
+        """Bound what an answer may miss: no carrier of the agent's host, and each entity together with its cargo."""
+        if not self.bounds.setting.missable:
+            return NOTHING
+        cargo = frozenset[Name]().union(*map(self.bounds.aboard, self.bounds.setting.missable))
+        reads = self.where(hosts) | self.slots.of("placement", cargo)
+        return SlotFootprint(reads) | self.slots.footprint([("host", agent)])
 
     def control(self, agent: Name, reaction: Reaction) -> SlotFootprint:
         """Bound `actuate`, `command` and `commit` of a reaction, and `control.obstacle`."""
@@ -169,8 +181,8 @@ class Footprints:
         """
         logical, physical = self.bounds.initial.structure.logical, self.bounds.initial.structure.physical
         for name in self.bounds.names & self.bounds.known:
-            if name not in physical:
-                continue
+            if name not in physical or not self.bounds.around(name).isdisjoint(self.bounds.setting.missable):
+                continue  # an answer that misses it, or a place around it, may contradict L
             place = self.slots.of("parent", [name])
             agree = logical.parent(name) == physical.abstract_parent(name) and name not in self.bounds.cyclic
             if agree and not everything.writes & (place | self.where([name])):

@@ -58,6 +58,9 @@ class Automorphisms:
         self._check_program(renaming)
         if frozenset(map(renaming.name, self.c.setting.arriving)) != self.c.setting.arriving:
             raise Unlike("of one flights arrive, of the other not")
+        missable = self.c.setting.missable
+        if any((one in missable) is not (other in missable) for one, other in renaming.names.items()):
+            raise Unlike("an observation may miss one, and never the other")
         check_times(self.c, renaming)
         strays = self.c.setting.strays
         if any(strays.get(one) != strays.get(other) for one, other in renaming.names.items()):

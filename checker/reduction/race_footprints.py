@@ -49,7 +49,7 @@ class Marks:
         self.monitored = self.bounds.setting.monitored
         self.tellers = tellers(self.bounds.initial, self.roles) if self.monitored else frozenset()
         self.held = cache(self._held)
-        self.looking = cache(footprints.sense)
+        self.looking = cache(footprints.look)
         self._making = cache(self._make)
         self._reading = cache(self._of)
         self.resting = cache(self._resting)

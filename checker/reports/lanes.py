@@ -67,7 +67,7 @@ class LaneStep:
     @property
     def about(self) -> str:
         """The label without the rule and the lane."""
-        return str(self.label.about)
+        return self.label.details
 
     @property
     def last(self) -> int:

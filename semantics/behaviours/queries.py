@@ -4,7 +4,7 @@ A query denotes a set of nodes of A(P), composed pointwise. Its observation has 
 on the way: a yes is a pair, a no follows from an exhaustively listed place or link.
 """
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import assert_never
 
 from semantics.behaviours.observations import (
@@ -38,6 +38,24 @@ def evaluate(query: Query, physical: PhysicalModel, alpha: Agents) -> Observatio
     An absent host gives the empty observation.
     """
     return answers(resolve(query, physical, alpha), physical, alpha)
+
+
+def sights(
+    query: Query, physical: PhysicalModel, alpha: Agents, missable: Sequence[Name]
+) -> Iterator[tuple[tuple[Name, ...], Observation]]:
+    """Yield each possible answer of a query, with the missed entities M: q(A(P)) first, then q(A(P ∖ M)).
+
+    An answer may miss, one after the other, entities of `missable` that it would show. So M is empty or has entities
+    that matter to the query; there are at most 2ⁿ answers for n missable entities in view.
+    """
+    waiting: list[tuple[Name, ...]] = [()]
+    for missed in waiting:  # it grows meanwhile
+        seen = evaluate(query, physical.without(missed) if missed else physical, alpha)
+        yield missed, seen
+        for name in missable:
+            more = tuple(sorted({*missed, name}))
+            if more not in waiting and seen.fact(name) != NOTHING_SEEN:
+                waiting.append(more)
 
 
 def resolve(query: Query, physical: PhysicalModel, alpha: Agents) -> Steps:

@@ -120,7 +120,7 @@ class Written:
 
     def each(self, names: Iterable[str], part: Callable[[str], Part]) -> Mapping[str, Part]:
         """Return the part of each name in a pointwise definition."""
-        return {name: part(name) for name in names}
+        return self.cells.each(names, part)
 
     def with_(self, changes: Mapping[Cell, Any]) -> "Written":
         """Return the cells with more changes over them."""

@@ -1,7 +1,7 @@
 """Configurations ⟨α | S | η⟩: immutable, hashable, compared by value; and the transitions between them."""
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from semantics.state.agents import Agents
@@ -108,14 +108,25 @@ class Label:
         rule: The name of the inference rule.
         agent: The agent of the rule; None for the environment's rules.
         about: The request served, the observation received, or the text after the agent.
+        missed: The entities that an observation misses, sorted.
     """
 
     rule: str
     agent: Name | None
     about: Request | Received | str = ""
+    missed: tuple[Name, ...] = ()
+
+    def missing(self, *names: Name) -> "Label":
+        """Return the label of an observation that misses these entities instead."""
+        return replace(self, missed=names)
+
+    @property
+    def details(self) -> str:
+        """The text after the rule and the agent."""
+        return f"{self.about}, missing {', '.join(self.missed)}" if self.missed else str(self.about)
 
     def __str__(self) -> str:
-        words = [str(self.about)] if isinstance(self.about, REQUESTS) else [self.agent or "", str(self.about)]
+        words = [self.details] if isinstance(self.about, REQUESTS) else [self.agent or "", self.details]
         return f"⟨{self.rule} : {', '.join(word for word in words if word)}⟩"
 
     def __repr__(self) -> str:

@@ -1,13 +1,13 @@
 """The physical model P as a view over cells: placements, and σ_P = {contains, carries, connected}."""
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cache, lru_cache
 from itertools import takewhile
 from typing import NamedTuple
 
 from physical import Band, Geometry, PlaceIndex, area, band_contains, contains, point, share_interior
-from semantics.state.cell_values import NAMES, Cell, Cells, Changes, is_something
+from semantics.state.cell_values import NAMES, Cell, Cells, Changes, Written, is_something
 from semantics.state.signature import REGION, EntityKinds, Name
 from semantics.state.views import CellView
 
@@ -301,6 +301,11 @@ class PhysicalModel(CellView):
     def points(self, channel: Name) -> tuple[Name, ...]:
         """Return the entities on a link of A(P), sorted."""
         return tuple(name for name in self.cells.read(NAMES) if self.connected(channel, name))
+
+    def without(self, entities: Collection[Name]) -> "PhysicalModel":
+        """Return P without some entities and their cargo."""
+        gone = frozenset(entities).union(*map(self.cargo, entities))
+        return PhysicalModel(Written(self.cells, {placement_cell(each): None for each in gone}), self.sorting)
 
     def placing(self, entity: Name, placement: Placement | None) -> Changes:
         """Return the writes of P[entity ↦ placement]."""

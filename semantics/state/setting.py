@@ -48,6 +48,7 @@ class Setting(EntityKinds):
         clause_lines: The line in the mission's text of each clause of the environment, from 1.
         timing: The durations of steps; None if the mission has no `timing` section.
         strays: The greatest distance in metres of a vehicle from its way, for each that has a bound; sorted.
+        missable: Entities that an observation may miss; sorted.
         regions: The facts that regions need; None if no property is about regions. No rule reads them.
     """
 
@@ -60,6 +61,7 @@ class Setting(EntityKinds):
     clause_lines: tuple[int, ...] = ()
     timing: Timing | None = None
     strays: Mapping[Name, float] = field(default_factory=dict)
+    missable: tuple[Name, ...] = ()
     regions: "RegionFacts | None" = field(default=None, repr=False)
 
     def __repr__(self) -> str:

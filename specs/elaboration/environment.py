@@ -86,7 +86,7 @@ def _check_repeated(phase: _Clauses) -> None:
                 key, code = ("appears", entity.text), Code.REPEATED_SETTING
             case s.Vanishes(entity):
                 key, code = ("vanishes", entity.text), Code.REPEATED_SETTING
-            case s.Says() | s.Arrives() | s.Strays():
+            case s.Says() | s.Arrives() | s.Strays() | s.Misses():
                 continue
             case _:
                 assert_never(clause)
@@ -117,8 +117,8 @@ def _clause(phase: _Clauses, clause: s.EnvironmentClause) -> Clause | None:
         case s.Arrives():
             _arrives(phase, clause)
             return None
-        case s.Strays():
-            return None  # it is about no change: see `specs.elaboration.strays`
+        case s.Strays() | s.Misses():
+            return None  # they are about no change: see `specs.elaboration.strays` and `misses`
         case _:
             assert_never(clause)
 

@@ -30,6 +30,7 @@ from specs.elaboration.independent_diagnostics import independent
 from specs.elaboration.initial_actors import first_actors
 from specs.elaboration.live import elaborate_live
 from specs.elaboration.meeting_points import warn_of_meeting_points
+from specs.elaboration.misses import elaborate_misses
 from specs.elaboration.mission_mistakes import Findings
 from specs.elaboration.mobility import check_nesting, elaborate_mobility, fixed_entities, warn_of_outliers
 from specs.elaboration.names import Names
@@ -133,6 +134,7 @@ def elaborate(
     scheduler, control = variation.scheduler or scheduler, variation.control or control
     timing = elaborate_timing(mission, names, world, clauses, control, whole=whole)
     strays = elaborate_strays(mission, names, timing)
+    missable = elaborate_misses(mission, names)
     said = tuple(clause.message for clause in clauses if isinstance(clause, Says))
     inference = Inference(program, frozenset(names.kinds), frozenset(names.agents), said)
     types = check_types(names.demands, inference, names.findings)
@@ -152,6 +154,7 @@ def elaborate(
         clause_lines=tuple(source.line(span.start) for span in clause_spans),
         timing=timing,
         strays=strays,
+        missable=missable,
     )
     there = {name: world.channels[name] for name in world.placements}
     begin = partial(initial, placements=world.placements, channels=there, agents=agents)

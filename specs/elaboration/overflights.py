@@ -1,9 +1,9 @@
 """Overflights: flights that may cross a place from which an invariant excludes the vehicle.
 
 `actually` is about the places that contain vehicles, and a vehicle in transit is in no place that it only crosses. So
-an invariant that excludes a vehicle from a place holds even if its path leads through. Unless another invariant asks
-for the path (`not possibly u in p`), this module warns if the place meets the hull of two successive points of a
-possible flight.
+an invariant that excludes a vehicle, or its cargo, from a place holds even if its path leads through. Unless another
+invariant asks for the path (`not possibly u in p`), this module warns if the place meets the hull of two successive
+points of a possible flight.
 """
 
 from collections.abc import Callable, Iterable, Iterator
@@ -50,12 +50,16 @@ def warn_of_overflights(
         return
     c = begin()
     legs = frozenset(_legs(c))
-    for invariant, vehicle, place in forbidden:
-        ways = (_crossing(c, leg, legs, place) for leg in sorted(legs) if leg[0] == vehicle)
+    flights = [leg for leg in sorted(legs) if setting.signature[setting.kind(leg[0])].driven]
+    for invariant, entity, place in forbidden:
+        moving = _carriers(c, legs, entity)
+        ways = (_crossing(c, leg, legs, place) for leg in flights if leg[0] in moving)
         found = next((way for way in ways if way is not None), None)
         if found is not None:
-            message = f"{vehicle} may cross {place} on its way from {found[0]} to {found[1]}"
-            hint = f"'actually' is about its place, not its way; ask for its way: not possibly {vehicle} in {place}"
+            vehicle, begins, ends = found
+            aboard = "" if vehicle == entity else f", aboard {vehicle},"
+            message = f"{entity}{aboard} may cross {place} on its way from {begins} to {ends}"
+            hint = f"'actually' is about its place, not its way; ask for its way: not possibly {entity} in {place}"
             findings.warn(Code.MAY_CROSS, _line(findings, invariant.line), message, f"{hint}; {AROUND}")
 
 
@@ -67,11 +71,25 @@ def _line(findings: Findings, number: int) -> s.Span:
 
 
 def _kept_out(setting: Setting, asked: Property) -> Iterator[tuple[Name, Name]]:
-    """Yield the pairs of vehicle and place that an invariant keeps apart in P."""
+    """Yield the pairs of entity and place that an invariant keeps apart in P."""
     for atom in _denied_of(asked, Inside):
-        known = atom.node in setting.kinds and atom.place in setting.kinds
-        if atom.actually and known and setting.signature[setting.kind(atom.node)].driven:
+        if atom.actually and atom.node in setting.kinds and atom.place in setting.kinds:
             yield atom.node, atom.place
+
+
+def _carriers(c: Configuration, legs: Iterable[Leg], entity: Name) -> frozenset[Name]:
+    """Return an entity with all that may carry it: from the start, where it appears, or by a control, at any depth."""
+    clauses = (each for each in c.setting.environment if isinstance(each, Appears))
+    carried = [(each.entity, at.by) for each in clauses for at in each.placements if isinstance(at, Carried)]
+    carried += [(node, stops[-1]) for node, stops in legs if _takes(c, stops[-1], node)]
+    found, waiting = {entity}, [entity]
+    while waiting:
+        name = waiting.pop()
+        by = {c.structure.physical.carrier(name), *(holder for node, holder in carried if node == name)}
+        new = {each for each in by if each is not None} - found
+        found |= new
+        waiting += new
+    return frozenset(found)
 
 
 def _denied_of(asked: Property, sort: type[A]) -> tuple[A, ...]:
@@ -110,15 +128,19 @@ def _legs(c: Configuration) -> Iterator[Leg]:
                             yield node, (*reaction.via, place)
 
 
-def _crossing(c: Configuration, leg: Leg, legs: Iterable[Leg], place: Name) -> tuple[Name, Name] | None:
-    """Return the ends of a part of a flight that may cross a place, from any possible start; None if there is none."""
+def _takes(c: Configuration, holder: Name, entity: Name) -> bool:
+    return holder in c.setting.kinds and c.setting.carries(holder, entity)
+
+
+def _crossing(c: Configuration, leg: Leg, legs: Iterable[Leg], place: Name) -> tuple[Name, Name, Name] | None:
+    """Return the vehicle and the ends of a part of a flight that may cross a place; None if there is none."""
     vehicle, stops = leg
     begins = [vehicle, *sorted({each[1][-1] for each in legs if each[0] == vehicle} - {stops[-1]})]
     ways = [(begin, stops[0]) for begin in begins] + list(pairwise(stops))
     shapes = _shapes(c, place)
     for one, other in ways:
         if place not in (one, other) and _meets(_shapes(c, one), _shapes(c, other), shapes):
-            return ("its start" if one == vehicle else one), other
+            return vehicle, ("its start" if one == vehicle else one), other
     return None
 
 

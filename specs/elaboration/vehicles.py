@@ -1,4 +1,4 @@
-"""The vehicles of a bound: one by its name, or all of a kind."""
+"""The entities or vehicles of a clause: one by its name, or all of a kind."""
 
 from __future__ import annotations
 
@@ -22,10 +22,15 @@ def named_vehicles(names: Names, name: s.Name, what: str) -> tuple[str, ...]:
         message = f"'{name.text}' {what}, and {a(kind)} is not driven"
         names.findings.add(Code.NOT_DRIVEN, name, message, f"declare it: kind {kind} driven")
         return ()
+    return entities_of(names, name)
+
+
+def entities_of(names: Names, name: s.Name) -> tuple[str, ...]:
+    """Return the entities of a declared kind, or the named entity; warns of a kind without entities."""
     if name.text in names.kinds:
         return (name.text,)
-    found = tuple(sorted(each for each, of in names.kinds.items() if of == kind))
+    found = tuple(sorted(each for each, of in names.kinds.items() if of == name.text))
     if not found:
-        message = f"there is no entity of kind {kind}: this bound has no effect"
+        message = f"there is no entity of kind {name.text}: this has no effect"
         names.findings.warn(Code.BOUNDS_NOTHING, name, message, "declare one, or leave this out")
     return found

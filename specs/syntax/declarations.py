@@ -168,8 +168,19 @@ class Strays(Node):
     distance: Length
 
 
+@node
+class Misses(Node):
+    """`observe may miss OilSpill, boat0`: an observation may leave out these entities, although they are there.
+
+    A kind stands for all its entities. An [observation that misses](#observations-that-miss) an entity is as if the
+    entity, with its cargo, were not there. No agent misses its own host.
+    """
+
+    entities: tuple[Name, ...]
+
+
 EnvironmentClause: TypeAlias = (
-    DriftsAmong | DriftsWithin | Drops | Leaves | Appears | Vanishes | Says | Arrives | Strays
+    DriftsAmong | DriftsWithin | Drops | Leaves | Appears | Vanishes | Says | Arrives | Strays | Misses
 )
 
 

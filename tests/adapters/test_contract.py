@@ -30,6 +30,8 @@ from adapters.ros import RosFeed, RosVehicles
 from adapters.ros.position_messages import FIX
 from adapters.simulated import Kind, Simulator, Vehicle
 from adapters.simulated.camera import render
+from adapters.simulated.missing_sensor import MissingSensor
+from adapters.simulated.simulated_link import SimulatedLink
 from adapters.static_places import StaticPlaces
 from adapters.stations.shared_plugin import Shared
 from adapters.stations.station_plugin import Sharing
@@ -180,8 +182,8 @@ PLUGINS = {
     RosFeed: ros,
     CameraFeed: camera,
 }
-ELSEWHERE = {Plugin, Shared, Sharing}
-"""The interface, and what stands between several stations."""
+ELSEWHERE = {Plugin, Shared, Sharing, SimulatedLink, MissingSensor}
+"""The interface, what stands between several stations, and what stands for the world in rehearsals."""
 
 APART = {RosVehicles}
 """Held to the contract in `tests/adapters/ros/test_ros_vehicle.py`, with a router."""

@@ -108,4 +108,6 @@ def missions(draw, ways=WAYS):
     for agent, other in (("a", "b"), ("b", "a")):
         host = draw(st.sampled_from(sorted(CONTROLS)))
         text += f"BigActor {agent} hosted_at {host} with_behavior {{ {draw(bodies(host, other, ways))} }}\n"
+    missed = draw(st.sampled_from(["", "", "uav1", "drifter0, uav0"]))
+    text += f"environment {{ observe may miss {missed} }}\n" if missed else ""
     return text + f"control {draw(st.sampled_from(['atomic', 'timed']))}\n"

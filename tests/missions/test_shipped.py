@@ -51,6 +51,9 @@ SHIPPED: dict[str, Expected] = {
     "broken_range_of_radio": Expected(
         8, 9, violated={"in range of the first": {"invariant": 2}}, witnesses={"handed over": 5}
     ),
+    "broken_two_lanes": Expected(
+        17, 16, violated={"not through the oil": {"invariant": 8}}, witnesses={"through": 9}
+    ),
     "broken_unmatched": Expected(24, 46, violated={"local_consistency": {"unmatched": 3}}),
     "broken_unrealisable": Expected(60, 136, violated={"local_consistency": {"unrealisable": 4}}),
     "convoy": Expected(3_730, 11_253, witnesses={"all are out": 54}),
@@ -108,6 +111,7 @@ SHIPPED: dict[str, Expected] = {
     "surveillance": Expected(153, 663, witnesses={"an alarm is raised": 6}),
     "takeover": Expected(630, 2_214, witnesses={"landed after an emergency": 25}),
     "tanker": Expected(56, 125, witnesses={"both drifters deployed": 14}),
+    "two_lanes": Expected(13, 13, witnesses={"through": 10}),
     "two_gates": Expected(38, 76, witnesses={"there and back": 10}),
 }
 

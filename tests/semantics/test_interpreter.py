@@ -5,6 +5,7 @@ agent. It knows the rules req_obs, sense, rcv_obs, req_ctr, actuate and env, und
 """
 
 import copy
+from itertools import combinations
 
 from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, initialize, invariant, precondition, rule
@@ -16,6 +17,7 @@ from semantics.behaviours.expressions import Literal
 from semantics.behaviours.patterns import Anything
 from semantics.behaviours.statements import Case, ControlBy, Observe, React
 from semantics.environment import Drifts
+from semantics.state.configuration import Configuration
 from semantics.state.initial import Beliefs
 from semantics.state.physical_model import Placed
 from semantics.state.requests import OBS, READY
@@ -31,13 +33,14 @@ HOSTS = {"a": "u0", "b": "u1"}
 class Naive:
     """A mutable mission of two agents on u0 and u1, with a crate that drifts."""
 
-    def __init__(self, where, channels, parent, links, programs):
+    def __init__(self, where, channels, parent, links, programs, missable):
         self.where = where
         self.channels = channels
         self.parent = parent
         self.links = links
         self.left = programs
         self.eta = {agent: [] for agent in HOSTS}
+        self.missable = missable
 
     def contains(self, place, entity):
         """σ_P's contains, up the places around where the entity is; everything is in the region."""
@@ -70,12 +73,22 @@ class Naive:
             found.append((f"⟨req_ctr : {agent}, control({left[0][1]} {left[0][2]})⟩", ("ask", agent)))
         waiting = [each for each in line if each[0] != "READY"]
         if waiting and waiting[0] == ("OBS",):
-            found.append((f"⟨sense : OBS({agent}, CHILDREN(PARENT({HOSTS[agent]})))⟩", ("sense", agent)))
+            for missed in self.misses(agent):
+                missing = f", missing {', '.join(missed)}" if missed else ""
+                label = f"⟨sense : OBS({agent}, CHILDREN(PARENT({HOSTS[agent]}))){missing}⟩"
+                found.append((label, ("sense", agent, missed)))
         if waiting and waiting[0][0] == "CTR":
             _, command, target = waiting[0]
             label = f"⟨actuate : CTR({agent}, {command} {target})⟩"
             found += [(label, ("control", agent, way)) for way in self.ways(HOSTS[agent], command, target)]
         return found
+
+    def misses(self, agent):
+        """Return each set of entities that an answer can miss: any of those beside the host, but the host."""
+        place = self.parent_in_fact(HOSTS[agent])
+        beside = [name for name in sorted(self.missable) if self.parent_in_fact(name) == place]
+        beside = [name for name in beside if name != HOSTS[agent]]
+        return [some for size in range(len(beside) + 1) for some in combinations(beside, size)]
 
     def ways(self, host, command, target):
         """Return how a control can be done: the link it is about, or None for a move."""
@@ -103,9 +116,9 @@ class Naive:
         self.left[agent].pop(0)
         self.eta[agent].remove(next(each for each in self.eta[agent] if each[0] == "READY"))
 
-    def sense(self, agent):
+    def sense(self, agent, missed):
         place = self.parent_in_fact(HOSTS[agent])
-        inside = {name for name in NAMES if self.parent_in_fact(name) == place}
+        inside = {name for name in NAMES if self.parent_in_fact(name) == place} - set(missed)
         shown = tuple(sorted(inside | ({place} - {REGION})))
         pairs = tuple(sorted(f"parent({name}) = {place}" for name in inside))
         line = self.eta[agent]
@@ -223,8 +236,9 @@ class Beside(RuleBasedStateMachine):
         belief=st.none() | believed,
         links=st.none() | st.fixed_dictionaries(dict.fromkeys(("u0", "u1"), channel_sets)),
         written=st.fixed_dictionaries(dict.fromkeys(HOSTS, programs)),
+        missable=st.frozensets(st.sampled_from(["crate", "u0", "u1"])),
     )
-    def start(self, where, channels, belief, links, written):
+    def start(self, where, channels, belief, links, written, missable):
         channels = {name: channels.get(name, frozenset()) for name in NAMES}
         parent = belief or AROUND | where
         believed_links = {
@@ -232,7 +246,7 @@ class Beside(RuleBasedStateMachine):
             for name in NAMES
         }
         self.naive = Naive(
-            dict(where), dict(channels), dict(parent), dict(believed_links), copy.deepcopy(written)
+            dict(where), dict(channels), dict(parent), dict(believed_links), copy.deepcopy(written), missable
         )
         placements = tuple(Placed(point(*SPOTS[place])) for place in ("base", "sea", "area"))
         drift = Drifts("crate", placements, ("base", "sea", "area"), ((1, 2), (0, 2), (0, 1)), ())
@@ -256,6 +270,8 @@ class Beside(RuleBasedStateMachine):
             beliefs=Beliefs(parent, believed_links),
             environment=(drift,),
         )
+        setting = self.kernel.setting.with_(missable=tuple(sorted(missable)))
+        self.kernel = Configuration(setting, self.kernel.state)
         self.begun = True
 
     @precondition(lambda self: hasattr(self, "begun"))

@@ -80,6 +80,7 @@ WRITES = {
     "req_mgr": {"code", "store", "eta"},
     "rcv_obs": {"code", "store", "eta"},
     "rcv_msg": {"code", "store", "mailbox"},
+    "timeout": {"code", "store"},
     "sense": {"parent", "links", "eta"},
     "actuate": {"parent", "links", "placement", "channels", "eta"},
     "command": {"placement", "eta"},

@@ -100,6 +100,7 @@ LEAST = {
     s.Polygon: 1,
     s.Choose: 1,
     s.DriftsAmong: 1,
+    s.Misses: 1,
     (s.Appears, "placements"): 1,
 }
 IN_TUPLES = s.VariablePattern | s.Wildcard | s.LiteralPattern | s.ConstantPattern | s.TuplePattern

@@ -5,7 +5,7 @@ from typing import Final
 
 from bigactors.arguments.options import MISSION, add_serving, add_source
 from bigactors.arguments.parser import Parser
-from bigactors.arguments.values import corners, identity, named, place, seconds
+from bigactors.arguments.values import corners, identity, named, place, seconds, times
 from bigactors.commands.run.option_values import (
     ADDRESS,
     LIVING,
@@ -14,6 +14,7 @@ from bigactors.commands.run.option_values import (
     feed,
     kinds,
     living,
+    misses,
     published,
     station,
     vehicle,
@@ -67,7 +68,8 @@ def _vehicles_and_feeds(parser: Parser) -> None:
         default=[],
         type=vehicle,
         help=f"the address of the vehicle NAME, and its MAVLink system id, such as uav0={ADDRESS}; for a robot of "
-        "ROS 2, uav0=ros:tcp:HOST:PORT (docs/how-to/ros.md); `bigactors plugins` lists all forms; may be repeated",
+        "ROS 2, uav0=ros:tcp:HOST:PORT (docs/how-to/ros.md); for a rehearsal, simulated:plane; `bigactors plugins` "
+        "lists all forms; may be repeated",
     )
     group.add_argument(
         "--feed",
@@ -77,6 +79,13 @@ def _vehicles_and_feeds(parser: Parser) -> None:
         type=feed,
         help="a source of positions, such as ais=udp:10110 or ais=file:harbour.nmea; the kinds are ais, places, "
         "detections, locations, ros, and those of `bigactors plugins`; may be repeated",
+    )
+    group.add_argument(
+        "--misses",
+        metavar="SHARE[,SEED]",
+        type=misses,
+        help="simulate a sensor that misses, with the probability SHARE in each look, an entity that the mission lets "
+        "observations miss (observe may miss OilSpill)",
     )
     group.add_argument(
         "--publish",
@@ -257,6 +266,14 @@ def _course(parser: Parser) -> None:
         dest="duration",
         type=seconds,
         help="end the run after SECONDS (default: at the end of the mission)",
+    )
+    group.add_argument(
+        "--speed",
+        metavar="TIMES",
+        default=1.0,
+        type=times,
+        help="rehearse TIMES as fast as life: the run and its vehicles, all `simulated`, share one clock "
+        "(default: 1)",
     )
     group.add_argument(
         "--wait",

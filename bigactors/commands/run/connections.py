@@ -13,10 +13,14 @@ from adapters.addresses import SCHEMES
 from adapters.assigned import Assigned
 from adapters.mavlink.keys import Keeper
 from adapters.mavlink.mavlink_plugin import Autopilot, Listener, Tap
+from adapters.mavlink.signing import Signing
 from adapters.mavlink.vehicle_identities import Craft, Stations
 from adapters.naming import NamingService
 from adapters.plugin import Plugin, preflights
 from adapters.ros import RosVehicles
+from adapters.simulated import Kind, Vehicle
+from adapters.simulated.missing_sensor import MissingSensor
+from adapters.simulated.simulated_link import ADDRESS, SimulatedLink
 from bigactors.commands.run.cameras import cameras_of, poses_for
 from bigactors.commands.run.feeds import feeds_of
 from bigactors.commands.run.geofence import fence_of
@@ -25,7 +29,7 @@ from bigactors.commands.run.station_flight import driven, own_station
 from bigactors.installed_plugins import VEHICLES, make_vehicles, require_known
 from bigactors.mistakes import Mistake
 from bigraphs.notation.spelling import did_you_mean
-from physical import PhysicalError
+from physical import PhysicalError, PhysicalProperty
 from semantics.behaviours.reaction_rules import CONTROL_AUTHORITY
 from semantics.state.physical_model import Placed
 from semantics.state.signature import REGION
@@ -33,12 +37,16 @@ from specs.elaboration import ElaboratedMission
 
 MOST_STATIONS = 254
 ROS = "ros"
+SIMULATED = "simulated"
+GROUND = 20.0
+"""The metres above the sea of a simulated vehicle's home."""
 
 
 def plugins_of(
     options: Namespace, mission: ElaboratedMission, tap: Tap | None = None
 ) -> tuple[tuple[Plugin, ...], dict[str, str]]:
     """Return the plugins of a run, and the plugin that owns each vehicle; `tap` receives all frames; raises Mistake."""
+    check_speed(options)
     try:
         crafts = _crafts(options, mission)
         poses = poses_for(options.camera, crafts)
@@ -47,7 +55,7 @@ def plugins_of(
         naming = NamingService(dict(options.name), own, mission.setting.kinds)
         living = (LIVING | dict(options.time_to_live))["detections"]
         cameras = cameras_of(options, mission, poses, naming, living)
-        feeds = (*feeds_of(options, mission, naming), *cameras)
+        feeds = (*feeds_of(options, mission, naming), *cameras, *_sensor(options, mission))
     except PhysicalError as error:
         raise Mistake(error.message, error.hint, error.where) from error
     owners = {name: plugin.name for plugin in vehicles for name in crafts if plugin.owns(name)}
@@ -77,13 +85,58 @@ def _vehicles(
         scheme, colon, rest = address.partition(":")
         if not colon or scheme in SCHEMES:
             return Autopilot(f"autopilot {address}", address, crafts, stations, keeper, tap, listeners)
-        require_known(scheme, VEHICLES, (*SCHEMES, ROS), f"'{scheme:.40}' is no way to connect a vehicle")
+        if scheme == SIMULATED:
+            own = [replace(craft, system=craft.system or 1 + at) for at, craft in enumerate(crafts)]
+            link = Autopilot(f"autopilot {address}", ADDRESS, own, stations, keeper, tap, listeners)
+            key = None if keeper is None else Signing(keeper.key)
+            return SimulatedLink(link, [_simulated(craft, rest, mission, key) for craft in own])
+        ours = (*SCHEMES, ROS, SIMULATED)
+        require_known(scheme, VEHICLES, ours, f"'{scheme:.40}' is no way to connect a vehicle")
         assigned = tuple(_assigned(craft, mission) for craft in crafts)
         if scheme == ROS:
             return RosVehicles(f"robots {rest.partition('?')[0]}", rest, assigned)
         return make_vehicles(scheme, address, rest, assigned)
 
     return tuple(connected(address, crafts) for address, crafts in links.items())
+
+
+def _simulated(craft: Craft, word: str, mission: ElaboratedMission, key: Signing | None) -> Vehicle:
+    """Return a simulated vehicle of a kind, at home where the mission begins."""
+    kinds = {kind.name.lower().replace("_", "-"): kind for kind in Kind}
+    if word not in kinds:
+        raise Mistake(f"'{word:.40}' is no kind of simulated vehicle", f"there are {', '.join(kinds)}")
+    at = mission.initial.structure.physical.placement(craft.entity)
+    if not isinstance(at, Placed) or not at.geometry.is_point:
+        hint = f"place it in the world: {craft.entity}: {craft.kind} = point (37.0, -8.6)"
+        raise Mistake(f"'{craft.entity}' stands at no point in the mission, so it has no home", hint)
+    ((latitude, longitude),) = at.geometry.vertices
+    return Vehicle(kinds[word], (latitude, longitude, GROUND), craft.system or 1, signing=key)
+
+
+def _sensor(options: Namespace, mission: ElaboratedMission) -> tuple[Plugin, ...]:
+    """Return the simulated sensor that misses what the mission lets an observation miss; raises Mistake."""
+    if options.misses is None:
+        return ()
+    physical, kinds = mission.initial.structure.physical, mission.setting.kinds
+    vehicles = {name for name, _, _ in options.vehicle}
+    placed = [(name, physical.placement(name)) for name in mission.setting.missable if name not in vehicles]
+    there = [
+        PhysicalProperty(name, kinds[name], at.geometry, at.altitude, physical.channels(name))
+        for name, at in placed
+        if isinstance(at, Placed)
+    ]
+    if not there:
+        hint = "write environment { observe may miss OilSpill }, or leave --misses out"
+        raise Mistake("the mission lets no observation miss anything", hint, "--misses")
+    return (MissingSensor(there, *options.misses),)
+
+
+def check_speed(options: Namespace) -> None:
+    """Refuse another clock than that on the wall for vehicles that may be real; raises Mistake."""
+    real = [name for name, _, address in options.vehicle if address.partition(":")[0] != SIMULATED]
+    if options.speed != 1.0 and real:
+        hint = f"simulate it in the run (--vehicle {real[0]}=simulated:plane), or leave --speed out"
+        raise Mistake(f"{real[0]} may be a real vehicle, whose clock is that on the wall", hint, "--speed")
 
 
 def _assigned(craft: Craft, mission: ElaboratedMission) -> Assigned:

@@ -26,6 +26,7 @@ from adapters.plugin import Plugin
 from adapters.recording.mcap_files import RecordingError
 from adapters.recording.writing import Recorder
 from adapters.ros import RosSending
+from adapters.simulated import run as run_simulated
 from bigactors import __version__
 from bigactors.commands.run.connections import fences_of, plugins_of
 from bigactors.commands.run.console_beside import console_beside, recorded
@@ -112,7 +113,7 @@ def _run(flight: Flight, options: Namespace) -> Exit:
             try:
                 preflight = None if tape is None else tape.preflight
                 flown = fly(flight, tuple(looker for looker in lookers if looker), preflight)
-                ending = asyncio.run(flown)
+                ending = asyncio.run(flown) if flight.rate == 1.0 else run_simulated(flown, flight.rate)
             finally:
                 terminal.ends()
     except (NotAsAssumed, NotHeard, PluginFailed) as error:
@@ -163,7 +164,8 @@ def prepare(options: Namespace) -> Flight:
         )
         state = resumed(plan, known, time.time())
     start = Start(waits=options.console is not None and not options.at_once)
-    return Flight(options, mission, licence, plan, state, plugins, before, log, company, start=start)
+    rate: float = options.speed
+    return Flight(options, mission, licence, plan, state, plugins, before, log, company, rate, start)
 
 
 def _licence(options: Namespace, mission: ElaboratedMission) -> Licence | None:

@@ -96,6 +96,18 @@ def living(word: str) -> tuple[str, float]:
     return feed, seconds(time)
 
 
+def misses(word: str) -> tuple[float, int]:
+    """Parse SHARE[,SEED].
+
+    >>> misses("0.3"), misses("0.3,7")
+    ((0.3, 0), (0.3, 7))
+    """
+    found = re.fullmatch(r"(0(?:\.[0-9]{1,9})?|1(?:\.0)?)(?:,([0-9]{1,9}))?", word)
+    if not found:
+        raise argparse.ArgumentTypeError(f"'{word:.60}' is not SHARE[,SEED], such as 0.3,7")
+    return float(found[1]), int(found[2] or 0)
+
+
 def camera(word: str) -> argparse.Namespace:
     """Parse VEHICLE=SOURCE[,SETTING=VALUE...][,level].
 

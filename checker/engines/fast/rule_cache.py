@@ -125,7 +125,8 @@ class Exchange:
         about = self.constant(label.about) if isinstance(label.about, REQUESTS) else label.about
         if isinstance(about, str):
             about = self.printed(about)
-        return Label(label.rule, None if label.agent is None else self.renaming.name(label.agent), about)
+        agent = None if label.agent is None else self.renaming.name(label.agent)
+        return Label(label.rule, agent, about, tuple(sorted(map(self.name, label.missed))))
 
     def printed(self, text: str) -> str:
         """Return the image of words in the notation of the language: texts, in quotes, stay."""

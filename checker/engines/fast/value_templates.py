@@ -45,7 +45,7 @@ def mobile_names(setting: Setting, first: Row) -> frozenset[Name]:
     agents: set[Name] = set()
     if any(isinstance(statement, Migrate | Spawn) for statement in setting.program.statements):
         agents = set(map(agent_key, agents_of(setting, first)))
-    return frozenset(driven | around | aboard | agents)
+    return frozenset(driven | around | aboard | agents).union(setting.missable)
 
 
 def agents_of(setting: Setting, first: Row) -> frozenset[Name]:

@@ -49,7 +49,7 @@ def classes(
     members: dict[tuple[object, ...], list[int]] = {}
     for number, label in enumerate(labels):
         if fairness.steps.has(label) and (said or arrives(label, arriving)):
-            key = tuple(label if word == "label" else getattr(label, word) for word in fairness.per)
+            key = tuple(label.missing() if word == "label" else getattr(label, word) for word in fairness.per)
             members.setdefault(key, []).append(number)
     for numbers in members.values():
         marked = np.zeros(len(labels), dtype=np.bool_)

@@ -15,7 +15,7 @@ from adapters.camera.poses import PoseLog
 from adapters.camera.sea_projection import Lens, Pose
 from adapters.camera.sources import Folder, Stream, source_of
 from adapters.camera.votes import share
-from adapters.plugin import Trouble
+from adapters.plugin import Aged, Gone, Trouble
 from adapters.simulated.camera import render
 from bigactors.cli import run
 from bigactors.commands.run.option_values import camera
@@ -109,6 +109,26 @@ async def test_what_a_camera_sees_is_published_under_a_name_that_it_keeps(tmp_pa
     assert found[1].geometry is found[0].geometry  # it is the same, and is seen again
     assert share(found[3].geometry, other) >= 0.85
     assert sky.published[0].time_to_live == 100.0
+
+
+async def test_what_later_frames_contradict_is_withdrawn_and_published_again_when_they_show_it(tmp_path):
+    sky = Sky()
+    feed = CameraFeed("camera1", Camera("uav0", LENS), Folder(tmp_path), sky.poses)
+
+    def shown(slicks, is_reached):
+        def done():
+            sky.fly(above(), sky.time + 4)
+            put(tmp_path, sky.time - 2, picture(above(), slicks, seed=int(sky.time)))
+            return sky.published and is_reached(sky.published[-1])
+
+        return done
+
+    await looked(sky, feed, shown([SPILL], lambda each: isinstance(each, Aged)))
+    await looked(sky, feed, shown([], lambda each: isinstance(each, Gone)))
+    assert sky.published[-1].entity == "oilSpill0"
+    await looked(sky, feed, shown([SPILL], lambda each: isinstance(each, Aged)))
+    assert [type(each) for each in sky.published] == [Aged, Gone, Aged]
+    assert sky.published[-1].property.entity == "oilSpill0"
 
 
 async def test_a_frame_whose_pose_is_not_known_is_left_out_and_told(tmp_path):

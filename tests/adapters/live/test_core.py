@@ -333,6 +333,29 @@ def test_what_is_too_old_leaves_p_and_so_does_what_is_said_to_be_gone():
     assert run.labels[2:] == ["⟨env : boat0 vanishes⟩"]
 
 
+@pytest.mark.parametrize(
+    ("clause", "again", "looked", "broken"),
+    [
+        ("observe may miss Vessel", False, ", missing boat0", []),
+        ("observe may miss Vessel", True, "", []),
+        ("boat0 vanishes observe may miss Vessel", False, "", []),
+        ("", False, "", ["broken assumption"]),
+    ],
+)
+def test_what_is_no_longer_seen_is_missed_where_the_mission_says_so(clause, again, looked, broken):
+    there = TOUR.replace("point (37.03, -8.63)", "point (37.015, -8.615)")
+    run = Run(plan_of(f"{there}{GO}environment {{ {clause} }}", GOES_ON))
+    run.turn(0.0, seen("uav0", WEST, 0.0), aged(boat((37.015, -8.615), 0.0), 60.0))
+    run.turn(61.0)
+    assert run.kinds() == broken
+    physical = run.state.configuration.structure.physical
+    assert ("boat0" in physical) == clause.startswith("observe")
+    run.turn(62.0, seen("uav0", EAST, 62.0), *([boat((37.015, -8.615), 62.0)] if again else []))
+    assert f"⟨sense : OBS(a, CHILDREN(east0)){looked}⟩" in run.labels
+    assert ("boat0" in run.shown[0]) == again
+    assert run.kinds() == broken
+
+
 def test_what_grows_old_and_what_waits_has_longer_while_nobody_listens():
     run = Run(plan_of(TOUR + GO + "environment { boat0 vanishes }", LATE))
     run.turn(0.0, seen("uav0", WEST, 0.0), aged(boat((37.03, -8.63), 0.0), 60.0))

@@ -41,6 +41,7 @@ def offered(text, behind=""):
         (CHECK + 'invariant "i": tower.', {"variable": {"obs"}}),
         ("\nenvironment {\n  uav0 leaves ", {"channel": CHANNELS}),
         ("\nenvironment {\n  uav0 drifts among ", {"entity": ENTITIES}),
+        ("\nenvironment {\n  observe may miss ", {"entity": ENTITIES, "kind": KINDS}),
         ("\nenvironment {\n  ", {"entity": ENTITIES, "channel": CHANNELS}),
         ("\nbelieves {\n  ", {"entity": ENTITIES}),
         ("\nworld {\n  uav9: ", {"kind": KINDS}),

@@ -10,6 +10,7 @@ LANGUAGE = {
     "timing": (NO, YES),
     "drift": (NO, "among", "within"),
     "cargo": (NO, YES),
+    "misses": (NO, "kind", "few"),
     "channels": (NO, "drop", "return", "leave"),
     "messages": (NO, YES),
     "migration": (NO, YES),
@@ -117,6 +118,10 @@ def _environment(row):
         ("channels", "return"): "wifi drops and returns",
         ("channels", "leave"): "uav1 leaves wifi and returns",
         ("control", "timed"): "uav0 arrives",
+    }
+    clauses |= {
+        ("misses", "kind"): "observe may miss UAV",
+        ("misses", "few"): "observe may miss slick0, uav1",
     }
     clauses["regions", "strays"] = "UAV strays at most 5 m"
     chosen = [clause for choice, clause in clauses.items() if choice in row.items()]

@@ -327,11 +327,16 @@ def received(c):
 
 
 @examples(300 if IS_WHOLE else 180)
-@given(st.one_of(companies(), chains()), st.sampled_from(CONTROLS), st.integers(0, 1 << 32))
-def test_in_a_run_each_control_is_stale_that_is_so_by_definition_and_no_other(company, control, seed):
+@given(
+    st.one_of(companies(), chains()),
+    st.sampled_from(CONTROLS),
+    st.sampled_from(["", "", "environment { observe may miss UAV, gate0, vessel0 }"]),
+    st.integers(0, 1 << 32),
+)
+def test_in_a_run_each_control_is_stale_that_is_so_by_definition_and_no_other(company, control, missed, seed):
     first = WORLD.count("\n") + 1
     try:
-        c = monitored(start(text_of(company, first) + f"control {control}\n"))
+        c = monitored(start(text_of(company, first) + f"control {control}\n{missed}"))
     except MissionError:
         reject()
     judge, choose, trace = Judge(company, first), Random(seed).choice, Trace(c)
