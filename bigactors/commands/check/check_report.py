@@ -87,7 +87,7 @@ def report_all(
         if options.verdict and isinstance(result, Checked):
             keep_verdict(result, options, key)
         if options.trace and isinstance(result, Checked):
-            keep_evidence(result, options.trace, folders)
+            keep_evidence(result, options, folders)
     code = worst(result.exit for result in results)
     if len(results) > 1 and not alone:
         for line in summary(results):
@@ -184,14 +184,15 @@ def keep_verdict(checked: Checked, options: Namespace, key: SigningKey | None) -
     tell(f"  verdict: {'holds' if data['holds'] else 'does not hold'}, written to {options.verdict}")
 
 
-def keep_evidence(checked: Checked, folder: str, taken: set[str]) -> None:
+def keep_evidence(checked: Checked, options: Namespace, taken: set[str]) -> None:
     """Write the traces of a mission into a folder of its own, and print their paths."""
     from bigactors.trace_files import write_evidence  # only --trace waits for pictures
 
+    folder, sources = options.trace, variation_of(options).sources
     stem = name = file_stem(Path(checked.name).stem)
     number = 2
     while name in taken:
         name, number = f"{stem}-{number}", number + 1
     taken.add(name)
-    for written in write_evidence(checked, Path(folder) / name):
+    for written in write_evidence(checked, Path(folder) / name, sources):
         tell(f"  trace: {written}/trace.html, .txt, .json and .svg")
