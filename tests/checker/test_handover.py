@@ -11,6 +11,7 @@ from checker import Engine, check, handover
 from checker.handover import Compilation, Handover
 from checker.limits import Limits, Stop
 from checker.reduction.refusals import Reduction
+from checker.verdicts import Outcome
 from specs.elaboration import load_mission
 
 ROOT = Path(__file__).parents[2]
@@ -55,7 +56,6 @@ def test_compiled_loops_take_over_at_once(known):
     with Handover(0.0, known) as change:
         assert change.is_due()
         assert not change.is_waiting
-        assert change.uncounted.seconds == 0.0
 
 
 def test_nothing_takes_over_before_its_time():
@@ -96,6 +96,34 @@ def test_the_reference_engine_goes_on_while_loops_are_compiled(monkeypatch):
     assert [(each.outcome, each.note) for each in decided.verdicts] == [
         (each.outcome, each.note) for each in alone.verdicts
     ]
+
+
+def test_a_slow_compilation_takes_no_time_from_the_check(monkeypatch):
+    slow = [sys.executable, "-c", "import time; time.sleep(5)"]
+    monkeypatch.setattr(Compilation, "is_done", lambda _: False)
+    monkeypatch.setattr(Compilation, "begin", lambda _: subprocess.Popen(slow))
+    monkeypatch.setattr(handover, "_has_cores", lambda: True)
+    monkeypatch.setattr(sys.modules["checker.check"], "PATIENCE", 0.1)
+    report = check(load_mission("oil_spill_timed"), limits=Limits(seconds=4.0))
+    assert report.complete
+    assert all(verdict.outcome is Outcome.HOLDS for verdict in report.verdicts)
+
+
+@pytest.mark.long
+def test_a_check_without_compiled_loops_decides_within_its_limit(tmp_path):
+    """See the hook of pre-commit, after an installation, on one core and on all."""
+    for cores in ({0}, os.sched_getaffinity(0)):
+        env = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path / str(len(cores))), "PYTHONPATH": str(ROOT)}
+        words = ("check", "--no-traces", "--max-time", "10", "oil_spill_timed")
+        done = subprocess.run(
+            [sys.executable, "-m", "bigactors", *words],
+            env=env,
+            capture_output=True,
+            text=True,
+            check=False,
+            preexec_fn=lambda cores=cores: os.sched_setaffinity(0, cores),
+        )
+        assert done.returncode == 0, done.stdout
 
 
 @pytest.mark.long
