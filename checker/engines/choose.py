@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, Protocol, assert_never, overload
+from typing import TYPE_CHECKING, Protocol, assert_never, cast, overload
 
 from checker.engines.capabilities import Feature, engines, features
 from checker.engines.contract import (
@@ -102,7 +102,7 @@ def explore(  # noqa: PLR0913 - independent options, passed by name
         engines(asked | {Feature.MODEL}, engine)
         if tuple(inspect):
             raise TypeError("inspections are about configurations: ask the exploration of a model afterwards")
-        return explore_model(initial, options)
+        return explore_model(cast("Model[State]", initial), options)
     engines(asked if initial.setting.timing is None else asked | {Feature.TIMING}, engine)
     return explore_by(initial, tuple(inspect), options)
 
