@@ -19,7 +19,7 @@ from bigactors.checkout import share_rooms
 
 share_rooms()
 
-__version__ = "0.2.0"
+__version__ = "0.3.0"
 
 HOMES: Final = {
     alias.name: str(line.module)

@@ -50,5 +50,6 @@ from specs import format_mission as format_mission
 from specs.elaboration import ElaboratedMission as ElaboratedMission
 from specs.elaboration import load_mission as load_mission
 from specs.elaboration import read_mission as read_mission
+from specs.syntax import Mission as Mission
 
 __version__: str

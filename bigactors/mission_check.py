@@ -8,8 +8,9 @@ from checker import Limits, Report
 from checker.check import Checkable
 from checker.check import check as check_properties
 from semantics import Configuration, Property
+from specs.syntax import Mission
 
-Start: TypeAlias = Configuration | Checkable | str | Path
+Start: TypeAlias = Configuration | Checkable | Mission | str | Path
 
 
 def check(
@@ -21,7 +22,7 @@ def check(
     """Explore all reachable configurations and decide the properties.
 
     Args:
-        start: A mission; the path of its file, or the name of one that ships; or a configuration to start from.
+        start: A mission, or its syntax tree; the path of its file, or the name of one that ships; or a configuration.
         properties: The properties to decide; by default the mission's.
         limits: The bounds of the exploration.
         options: Those of `checker.check`: `report`, `notes`, `engine`, `violations`, `reduce`, `keeping`, `cluster`,
@@ -32,8 +33,8 @@ def check(
         RefusedError: A reduction is unsound for the mission, or nothing in it allows one.
         TypeError: A configuration is given without properties.
     """
-    if isinstance(start, str | Path):
-        from specs.elaboration import load_mission  # noqa: PLC0415 - a caller with a mission has loaded it already
+    if isinstance(start, str | Path | Mission):
+        from specs.elaboration import load_mission, read_mission  # noqa: PLC0415 - not for an elaborated mission
 
-        start = load_mission(start)
+        start = read_mission(start) if isinstance(start, Mission) else load_mission(start)
     return check_properties(start, properties, limits, **options)

@@ -2,9 +2,10 @@
 
 import hashlib
 from argparse import Namespace
-from collections.abc import Callable
-from functools import cache, partial
+from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 from bigactors import __version__
 from bigactors.diagnostic_output import as_mistake
@@ -14,7 +15,14 @@ from semantics.state.canonical import canonical
 from semantics.state.physical_model import Placed
 from semantics.state.setting import Control, Scheduler
 from specs import MissionError
-from specs.elaboration import ElaboratedMission, Variation, find_mission, load_mission, require_bigactor
+from specs.elaboration import (
+    ElaboratedMission,
+    Variation,
+    find_mission,
+    load_mission,
+    read_mission,
+    require_bigactor,
+)
 
 
 def locate(word: str) -> Path:
@@ -56,9 +64,25 @@ def checkable(mission: ElaboratedMission) -> ElaboratedMission:
     return mission
 
 
-def opening(variation: Variation) -> Callable[[str], ElaboratedMission]:
-    """Return a cached `open_mission`."""
-    return cache(partial(open_mission, variation=variation))
+def text_json(mission: ElaboratedMission, file: str, sources: Mapping[str, Path]) -> dict[str, Any]:
+    """Return the text of a mission, and where its files are, as plain data that `from_text` reads in any folder."""
+    return {
+        "text": mission.source.text,
+        "folder": str(locate(file).absolute().parent),
+        "sources": {name: str(path.absolute()) for name, path in sources.items()},
+    }
+
+
+def from_text(data: Mapping[str, Any], variation: Variation) -> ElaboratedMission:
+    """Return the mission whose text is in the data; the files that it names are read again. Raises Mistake."""
+    sources = data.get("sources")
+    found = {name: Path(str(file)) for name, file in sources.items()} if isinstance(sources, dict) else {}
+    asked = replace(variation, sources={**found, **variation.sources})
+    folder, name = str(data.get("folder", ".")), str(data["mission"])
+    try:
+        return read_mission(str(data["text"]), folder, name=name, variation=asked)
+    except MissionError as error:
+        raise as_mistake(error) from error
 
 
 def fixed_places(mission: ElaboratedMission) -> tuple[PhysicalProperty, ...]:

@@ -15,8 +15,7 @@ from adapters.live.timing_monitor import Timers, begun, stepped
 from adapters.live.turn_result import Outgoing
 from adapters.recording.mcap_files import Message, RecordingError
 from adapters.recording.recording_reader import Recording, read_recording
-from bigactors.diagnostic_output import as_mistake
-from bigactors.mission_lookup import digest_of
+from bigactors.mission_lookup import digest_of, from_text
 from bigactors.mistakes import Mistake, unreadable
 from checker import ReplayError, Trace, replay
 from checker.traces import SCHEMA
@@ -26,9 +25,7 @@ from semantics.state.configuration import Configuration, Transition
 from semantics.state.observation_serialization import geometry_of
 from semantics.state.setting import Control, Scheduler
 from semantics.state.station_partition import Parting, Passage, parcel_of, parted
-from specs import MissionError, Source
-from specs.elaboration import ElaboratedMission, Variation, elaborate
-from specs.parser import parse
+from specs.elaboration import ElaboratedMission, Variation
 
 
 def open_recording(path: str) -> Recording:
@@ -43,15 +40,7 @@ def open_recording(path: str) -> Recording:
 
 def mission_of(recording: Recording) -> ElaboratedMission:
     """Return the mission of a recorded run. Its text is in the recording; the files that it names are read again."""
-    run = recording.run
-    sources = run.get("sources")
-    found = {name: Path(str(file)) for name, file in sources.items()} if isinstance(sources, dict) else {}
-    live = Variation(Scheduler.FCFS, Control.TIMED, found)
-    source = Source(run["mission"], run["text"])
-    try:
-        return elaborate(parse(source), source, Path(str(run.get("folder", "."))), live)
-    except MissionError as error:
-        raise as_mistake(error) from error
+    return from_text(recording.run, Variation(Scheduler.FCFS, Control.TIMED))
 
 
 def trace_of(recording: Recording, mission: ElaboratedMission) -> Trace:

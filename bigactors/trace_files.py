@@ -1,17 +1,21 @@
 """The traces of a report as files: text, JSON, pictures and pages."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from types import MappingProxyType
+from typing import Any
 
 from bigactors.checking import Checked
 from bigactors.files import file_stem, make_folder, write_json, write_text
+from bigactors.mission_lookup import digest_of, text_json
 from bigactors.pages import MOST_PICTURES, Story, trace_page
 from bigactors.picture_files import draw_run
 from bigactors.pictures import RegionMarks, marks_of
 from checker import Trace, print_trace, to_json
 from semantics.properties.kinds import PropertyKind
 from semantics.state.printing import print_configuration
+from specs.elaboration import ElaboratedMission
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,22 +71,33 @@ def evidence_of(checked: Checked) -> Iterator[Evidence]:
             yield Evidence(name, stem, about, verdict.witness, False, telling=found, marks=marks)
 
 
-def write_evidence(checked: Checked, folder: Path) -> tuple[Path, ...]:
+def write_evidence(
+    checked: Checked, folder: Path, sources: Mapping[str, Path] = MappingProxyType({})
+) -> tuple[Path, ...]:
     """Write every trace of a report into a folder of its own: `trace.txt`, `trace.json`, `trace.svg`, `trace.html`.
 
     Each configuration of a violation, or of a witness of reachability, is drawn; of other traces only the last one, in
-    the page. Returns the folders.
+    the page. `sources` replaced files of the mission's world. Returns the folders.
     """
     written: list[Path] = []
     for each in evidence_of(checked):
         target = make_folder(str(_free(folder / each.stem, written)))
         write_text(str(target / "trace.txt"), "\n".join(_lines(checked, each)) + "\n")
-        write_json(str(target / "trace.json"), to_json(each.trace, checked.name, checked.digest))
+        write_json(str(target / "trace.json"), trace_json(each.trace, checked.name, checked.mission, sources))
         title = f"{checked.mission.name}, {each.stem}:"
         draw_run(each.trace, target, title, each_step=each.telling, marks=each.marks)
         write_text(str(target / "trace.html"), trace_page(story_of(checked, each)))
         written.append(target)
     return tuple(written)
+
+
+def trace_json(
+    trace: Trace, file: str, mission: ElaboratedMission, sources: Mapping[str, Path]
+) -> dict[str, Any]:
+    """Return a trace as plain data, with its mission: `show` and `replay` read it in any folder."""
+    setting = mission.setting
+    variation = {"scheduler": setting.scheduler.value, "control": setting.control.value}
+    return to_json(trace, file, digest_of(mission)) | text_json(mission, file, sources) | variation
 
 
 def story_of(checked: Checked, evidence: Evidence) -> Story:

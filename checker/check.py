@@ -146,8 +146,7 @@ def check(  # noqa: PLR0913 - independent options
         tried = run(able[0], replace(limits, overtaken=handover.is_due, uncounted=handover.uncounted))
     stops = {bound.stop for bound in tried.bounds}
     if Stop.OVERTAKEN in stops or (handover.is_waiting and not stops.isdisjoint(LARGE)):
-        spent = limits.spent + tried.seconds - handover.uncounted.seconds
-        return run(able[1], replace(limits, spent=spent))
+        return run(able[1], replace(limits, spent=limits.spent + min(tried.seconds, PATIENCE)))
     return tried
 
 

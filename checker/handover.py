@@ -76,7 +76,7 @@ class Handover:
     """The moment at which the fast engine takes over: after some seconds, as soon as its loops are compiled.
 
     Attributes:
-        uncounted: The seconds of waiting for the compilation, which count towards no limit.
+        uncounted: The seconds since that moment, of waiting for the compilation, which count towards no limit.
     """
 
     def __init__(self, after: float, compilation: Compilation) -> None:
@@ -102,15 +102,13 @@ class Handover:
 
     def is_due(self) -> bool:
         """Return whether the fast engine takes over now; begin the compilation when its time has come."""
-        since = monotonic() - self.began - self.after
-        if self._is_due or since < 0:
+        if self._is_due or monotonic() < self.began + self.after:
             return self._is_due
         if self._process is None:
             self._is_due = not _has_cores() or self.compilation.is_done() or not self._begin()
-            self.began = monotonic() - self.after
         else:
-            self.uncounted.seconds = since
             self._is_due = self._process.poll() is not None
+        self.uncounted.seconds = monotonic() - self.began - self.after
         return self._is_due
 
     def _begin(self) -> bool:

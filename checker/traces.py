@@ -162,6 +162,39 @@ def print_trace(trace: Trace, *, changes: bool = True) -> Iterator[str]:
         yield print_loop(trace)
 
 
+def print_parts(trace: Trace, most: int) -> Iterator[str]:
+    """Print the last steps of a trace, and those with a role in a race, in about so many lines; count the others."""
+    printed = [
+        [print_step(trace, number), *(f"      {line}" for line in print_changes(source, step.target))]
+        for number, (step, source) in enumerate(zip(trace.steps, trace.configurations, strict=False), 1)
+    ]
+    chosen = _fitting(trace, list(map(len, printed)), most)
+    number = 0
+    while number < len(printed):
+        if number in chosen:
+            yield from printed[number]
+            number += 1
+            continue
+        after = next((each for each in range(number, len(printed)) if each in chosen), len(printed))
+        yield f"... {counted(after - number, 'step')} from c{number} to c{after}: --all"
+        number = after
+    if trace.loop is not None:
+        yield print_loop(trace)
+
+
+def _fitting(trace: Trace, lengths: list[int], most: int) -> set[int]:
+    """Return the numbers, from 0, of the steps that fit: those with a role first, then from the end."""
+    backwards = range(len(lengths) - 1, -1, -1)
+    chosen: set[int] = set()
+    for number in (*(each for each in backwards if trace.role(each + 1)), *backwards):
+        if number not in chosen:
+            most -= lengths[number]
+            if most < 0 and chosen:
+                break
+            chosen.add(number)
+    return chosen
+
+
 def print_step(trace: Trace, number: int) -> str:
     """Print one step, numbered from 1: its date, its label, and its role in a race."""
     date, role = trace.date(number - 1), trace.role(number)

@@ -418,7 +418,7 @@ def decimal(value: float) -> str:
     >>> decimal(400.0), decimal(37.1), decimal(1e-07)
     ('400', '37.1', '1e-07')
     """
-    return str(int(value)) if value.is_integer() and abs(value) < 1e15 else repr(value)
+    return str(int(value)) if float(value).is_integer() and abs(value) < 1e15 else repr(value)
 
 
 def separated(word: str, nodes: Sequence[s.Node]) -> list[str]:

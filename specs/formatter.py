@@ -89,7 +89,7 @@ def _own_rows(item: _Commented, closing: bool) -> Iterator[tuple[str, int | None
 
 
 def _follows_empty_line(source: str, offset: int) -> bool:
-    gap = offset - 1
+    gap = min(offset, len(source)) - 1  # a tree without its text has places in it all the same
     while gap >= 0 and source[gap] in " \t\n;":
         gap -= 1
     return source.count("\n", gap + 1, offset) > 1

@@ -1,5 +1,6 @@
 """What is built, what it is tested with, and the files that other programs read: they fit what is here."""
 
+import json
 import re
 import subprocess
 import sys
@@ -9,10 +10,12 @@ from collections import Counter
 from importlib import import_module
 
 import pytest
+import yaml
 from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
 from repository import PAGES, ROOT, name_of, read
 
+from bigactors import __version__
 from bigactors.commands import NAMES
 from bigraphs.notation.bgm import parser as bgm_parser
 from bigraphs.notation.big import parser as big_parser
@@ -120,3 +123,19 @@ def test_no_two_modules_beside_the_tests_have_one_name():
     folders = [path for room in ("tests", "benchmarks") for path in (ROOT / room).rglob("*.py")]
     stems = Counter(path.stem for path in folders if not path.stem.startswith(("test_", "conftest", "__")))
     assert [stem for stem, times in stems.items() if times > 1] == []
+
+
+def test_the_version_is_the_same_everywhere():
+    citation = yaml.safe_load(read("CITATION.cff"))
+    released = re.search(r"^## (\d\S+) \((\S+)\)$", read("CHANGELOG.md"), re.MULTILINE)
+    assert (citation["version"], str(citation["date-released"])) == released.groups()
+    assert citation["version"] == json.loads(read("editors/vscode/package.json"))["version"] == __version__
+
+
+def test_the_forms_of_issues_ask_for_something():
+    for form in (ROOT / ".github" / "ISSUE_TEMPLATE").glob("[!c]*.yml"):
+        asked = yaml.safe_load(form.read_text(encoding="utf-8"))
+        assert asked["name"]
+        assert asked["description"]
+        assert {each["type"] for each in asked["body"]} <= {"textarea", "input"}
+        assert all(each["attributes"]["label"] for each in asked["body"])

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, assert_never, overload
+from typing import TYPE_CHECKING, Protocol, assert_never, cast, overload
 
 from checker.engines.capabilities import Feature, engines, features
 from checker.engines.contract import (
@@ -26,9 +26,17 @@ if TYPE_CHECKING:
     from checker.reduction.reducer import Reduced
 
 
+class Mission(Protocol):
+    """What an exploration needs of a mission."""
+
+    @property
+    def initial(self) -> Configuration:
+        """The first configuration."""
+
+
 @overload
 def explore(
-    initial: Configuration,
+    initial: Configuration | Mission,
     inspect: Iterable[Inspect] = (),
     limits: Limits | None = None,
     report: Reporter | None = None,
@@ -50,7 +58,7 @@ def explore(
     every: float = 0.5,
 ) -> ModelExploration[State]: ...
 def explore(  # noqa: PLR0913 - independent options, passed by name
-    initial: Configuration | Model[State],
+    initial: Configuration | Mission | Model[State],
     inspect: Iterable[Inspect] = (),
     limits: Limits | None = None,
     report: Reporter | None = None,
@@ -63,7 +71,7 @@ def explore(  # noqa: PLR0913 - independent options, passed by name
     cluster: Cluster | None = None,
     threads: int | None = None,
 ) -> Exploration | ModelExploration[State]:
-    """Visit the configurations that are reachable from one, or the states of a model, breadth-first.
+    """Visit the configurations of a mission, or those that are reachable from one, or a model's states, breadth-first.
 
     Each of `inspect` sees each configuration as it is expanded, in the order of discovery. The other arguments are the
     attributes of `Options`. The transitions of a model are always kept.
@@ -73,9 +81,10 @@ def explore(  # noqa: PLR0913 - independent options, passed by name
         TypeError: A model is given with inspections, which are about configurations; or neither is given.
     """
     if not isinstance(initial, Configuration) and not hasattr(initial, "successors"):
-        raise TypeError(
-            "explore takes a configuration, or a model with `successors`; of a mission take `.initial`"
-        )
+        start = getattr(initial, "initial", None)
+        if not isinstance(start, Configuration):
+            raise TypeError("explore takes a mission, a configuration, or a model with `successors`")
+        initial = start
     is_model, names = not isinstance(initial, Configuration), () if reduce is None else reduce.names
     options = Options(
         limits or Limits(),
@@ -93,7 +102,7 @@ def explore(  # noqa: PLR0913 - independent options, passed by name
         engines(asked | {Feature.MODEL}, engine)
         if tuple(inspect):
             raise TypeError("inspections are about configurations: ask the exploration of a model afterwards")
-        return explore_model(initial, options)
+        return explore_model(cast("Model[State]", initial), options)
     engines(asked if initial.setting.timing is None else asked | {Feature.TIMING}, engine)
     return explore_by(initial, tuple(inspect), options)
 

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterable, Iterator
+from functools import partial
+from itertools import chain
 from typing import TYPE_CHECKING, Any, Final
 
 from checker.properties.coverage import Coverage, Gap
 from checker.reports.corridors_table import corridors_json, corridors_text
 from checker.reports.times import times_json, times_text
-from checker.traces import Trace, print_length, print_trace, to_json
+from checker.traces import Trace, print_length, print_parts, print_trace, to_json
 from checker.verdicts import Outcome, Report, Verdict, Violation
 from physical.wordings import counted
 from semantics.properties.kinds import PropertyKind
@@ -21,17 +23,41 @@ if TYPE_CHECKING:
 SCHEMA = "bigactors.report/1"
 """The version of the report's schema (docs/reference/json.md)."""
 
+SCREEN: Final = 40
+"""The lines of a report that fit a screen."""
+
+LEAST, MOST_TOLD = 6, 8
+"""On a screen: the least lines of a trace, and the most details of a violation."""
+
 MARKS = {Outcome.HOLDS: "✓", Outcome.VIOLATED: "✗", Outcome.INCOMPLETE: "?"}
 
 
-def report_text(name: str, report: Report, *, traces: bool = True) -> Iterator[str]:
-    """Yield a report line by line."""
+def report_text(
+    name: str, report: Report, *, traces: bool = True, screen: int | None = None
+) -> Iterator[str]:
+    """Yield a report line by line.
+
+    With `screen`, it has about so many lines: a property has one trace, of which the steps are left out that do not
+    fit, and says how to see the rest.
+    """
+    show = partial(_violation, traces=traces)
+    if screen is None or not traces:
+        yield from _lines(name, report, lambda verdict: chain.from_iterable(map(show, verdict.violations)))
+        return
+    others = sum(1 for _ in _lines(name, report, partial(_folded, room=0)))
+    room = (screen - others) // max(sum(bool(verdict.violations) for verdict in report.verdicts), 1)
+    yield from _lines(name, report, partial(_folded, room=max(room, LEAST)))
+
+
+def _lines(name: str, report: Report, show: Callable[[Verdict], Iterable[str]]) -> Iterator[str]:
+    """Yield a report line by line; `show` prints the violations of a property."""
     yield f"{name}: {size_text(report)}, {report.seconds:.2f} s"
     for bound in report.bounds:
         yield f"  {bound.effect}"
     width = max((len(verdict.property.name) for verdict in report.verdicts), default=0)
     for verdict in report.verdicts:
-        yield from _verdict(verdict, width, traces=traces)
+        yield f"  {MARKS[verdict.outcome]} {verdict.property.name:<{width}}  {verdict_text(verdict)}"
+        yield from show(verdict)
     if report.schedule is not None:
         yield from times_text(report.schedule)
     if report.corridors is not None:
@@ -51,12 +77,6 @@ def _followed(report: Report) -> str:
     if not report.reduced:
         return counted(report.transitions, "transition")
     return f"{report.transitions:,} of {counted(report.allowed, 'transition')}"
-
-
-def _verdict(verdict: Verdict, width: int, *, traces: bool) -> Iterator[str]:
-    yield f"  {MARKS[verdict.outcome]} {verdict.property.name:<{width}}  {verdict_text(verdict)}"
-    for violation in verdict.violations:
-        yield from _violation(violation, traces=traces)
 
 
 def verdict_text(verdict: Verdict) -> str:
@@ -105,6 +125,22 @@ def _violation(violation: Violation, *, traces: bool) -> Iterator[str]:
     yield f"      {print_length(violation.trace)}{':' if traces else ''}"
     if traces:
         yield from (f"        {line}" for line in print_trace(violation.trace))
+
+
+def _folded(verdict: Verdict, *, room: int) -> Iterator[str]:
+    """Yield the violations of a property in brief: the first with the steps that fit so many lines."""
+    for violation in verdict.violations[:1]:
+        yield f"      {violation.kind}: {violation.message}"
+        told = violation.told
+        yield from (f"        {line}" for line in told[:MOST_TOLD])
+        if len(told) > MOST_TOLD:
+            yield f"        ... {counted(len(told) - MOST_TOLD, 'line')} more: --all"
+        yield f"      {print_length(violation.trace)}:"
+        if room:
+            yield from (f"        {line}" for line in print_parts(violation.trace, room))
+    for violation in verdict.violations[1:]:
+        yield f"      {violation.kind}: {violation.message}"
+        yield f"      {print_length(violation.trace)}: --all"
 
 
 def report_json(name: str, digest: str, report: Report, control: Control) -> dict[str, Any]:

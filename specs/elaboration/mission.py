@@ -45,6 +45,7 @@ from specs.elaboration.value_types import Inference
 from specs.elaboration.variation import AS_WRITTEN, Variation
 from specs.elaboration.world import InitialWorld, elaborate_world
 from specs.elaboration.world_files import Library
+from specs.formatter import write_mission
 from specs.missions import shipped_missions
 from specs.parser import read
 from specs.preprocessing import MAX_BYTES, decode
@@ -263,14 +264,30 @@ def load_mission(mission: str | Path, variation: Variation = AS_WRITTEN) -> Elab
 
 
 def read_mission(
-    text: str, directory: str | Path = ".", *, name: str = "<text>", variation: Variation = AS_WRITTEN
+    text: str | s.Mission,
+    directory: str | Path = ".",
+    *,
+    name: str = "<text>",
+    variation: Variation = AS_WRITTEN,
 ) -> ElaboratedMission:
-    """Return the elaborated mission of a text; files named with `from` are sought in a directory.
+    """Return the elaborated mission of a text or of a syntax tree, which is written as a text.
+
+    Files named with `from` are sought in a directory.
 
     Raises:
         MissionError: The text has mistakes; lists them all, with positions in `name`.
+        ValueError: The tree cannot be written: one of its names or numbers has another meaning as text.
     """
+    if isinstance(text, s.Mission):
+        text = _written(text)
     return _elaborated(decode(name, text.encode("utf-8", "surrogatepass")), Path(directory), variation)
+
+
+def _written(tree: s.Mission) -> str:
+    text = write_mission(tree)
+    if (found := read(Source("tree", text))).mistakes or found.mission != tree:
+        raise ValueError(f"the tree is another mission than its text, which is:\n{text}")
+    return text
 
 
 def _elaborated(source: Source, directory: Path, variation: Variation) -> ElaboratedMission:

@@ -144,3 +144,20 @@ def test_what_is_shown_needs_nothing_else_and_no_colour_of_the_page(mission, rep
         assert not re.search(r"https?://|<style|<script|class=|background|color:(?:white|black)", html)
     svg = shown(mission.initial)["image/svg+xml"]
     assert not re.search(r'(?:href|src)="(?!#)', svg)
+
+
+@pytest.mark.long
+@pytest.mark.filterwarnings("default")  # those of Jupyter's own libraries
+def test_an_executed_notebook_has_pictures_and_tables(tmp_path):
+    client, forms = pytest.importorskip("nbclient"), pytest.importorskip("nbformat")
+    cells = (
+        "from bigactors import check, load_mission\nmission = load_mission('broken_deadlock')\nmission.initial",
+        "report = check(mission)\nreport",
+        "report.verdicts['deadlock_freedom'].violations[0].trace",
+    )
+    book = forms.v4.new_notebook(cells=list(map(forms.v4.new_code_cell, cells)))
+    client.NotebookClient(book, timeout=120, resources={"metadata": {"path": str(tmp_path)}}).execute()
+    picture, table, trace = (cell["outputs"][0]["data"] for cell in book.cells)
+    assert picture["image/svg+xml"].startswith("<svg ")
+    assert "deadlock_freedom" in table["text/html"]
+    assert "<table" in trace["text/html"]

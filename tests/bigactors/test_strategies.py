@@ -4,8 +4,8 @@ from hypothesis import Phase, find, given, settings
 from scale import examples
 
 import semantics.hypothesis_strategies
-from bigactors import Limits, Outcome, check, strategies
-from bigactors.strategies import missions
+from bigactors import Limits, Outcome, check, strategies, successors
+from bigactors.strategies import configurations, missions
 
 
 def test_every_public_strategy_is_offered_and_its_own():
@@ -26,6 +26,13 @@ def test_every_public_strategy_is_offered_and_its_own():
 def test_a_generated_mission_is_checked(mission):
     report = check(mission, limits=Limits(configurations=30))
     assert [each.property for each in report.verdicts] == list(mission.properties)
+
+
+@given(configurations())
+@examples(100)
+def test_a_generated_configuration_has_its_successors(configuration):
+    for transition in successors(configuration):
+        assert transition.target.setting is configuration.setting
 
 
 def test_missions_hold_and_are_violated():

@@ -15,6 +15,23 @@ from physical import Band, PhysicalProperty, point
 pytestmark = pytest.mark.usefixtures("missions")
 
 
+PORT = {
+    "type": "FeatureCollection",
+    "features": [
+        {
+            "type": "Feature",
+            "properties": {"name": "port", "kind": "Location"},
+            "geometry": {"type": "Polygon", "coordinates": [[[0, 0], [1, 0], [1, 1], [0, 0]]]},
+        }
+    ],
+}
+PORT_MISSION = """signature standard
+world { from "nowhere.geojson" uav0: UAV = point (0.3, 0.8) }
+BigActor a hosted_at uav0 with_behavior { observe(HOST) }
+check { reachable "asked": not ended a }
+"""
+
+
 @pytest.fixture
 def run(missions, bigactors):
     """A run of holds.mission in run.json, and how to change it."""
@@ -112,9 +129,41 @@ def test_a_trace_of_another_mission_is_replayed_with_a_warning_naming_both(bigac
 
 
 @pytest.mark.usefixtures("run")
-def test_the_mission_of_a_trace_is_found_beside_it(done, missions, monkeypatch, tmp_path_factory):
+def test_a_trace_of_a_mission_that_does_not_allow_it_is_refused_once(bigactors, missions):
+    text = (missions / "holds.mission").read_text()
+    (missions / "other.mission").write_text(text.replace("MOVE_HOST_TO searchArea0", "MOVE_HOST_TO base0"))
+    code, _, err = bigactors("show", "other.mission", "--trace", "run.json")
+    assert (code, err.count("may have changed"), "warning" in err) == (1, 1, False)
+
+
+def test_the_mission_of_a_trace_is_found_beside_it(run, done, missions, monkeypatch, tmp_path_factory):
+    without = {key: each for key, each in run().items() if key not in ("text", "folder")}
+    (missions / "run.json").write_text(json.dumps(without))
     monkeypatch.chdir(tmp_path_factory.mktemp("elsewhere"))
     done("replay", str(missions / "run.json"))
+
+
+def test_a_trace_has_its_mission_in_any_folder_and_after_any_change(
+    bigactors, missions, monkeypatch, tmp_path_factory
+):
+    (missions / "map.geojson").write_text(json.dumps(PORT))
+    mission = missions / "port.mission"
+    mission.write_text(PORT_MISSION)
+    options = (
+        "--scheduler",
+        "fcfs",
+        "--control",
+        "timed",
+        "--source",
+        f"nowhere.geojson={missions / 'map.geojson'}",
+    )
+    assert bigactors("check", "port.mission", "--trace", "traces", *options)[0] == 0
+    (trace, *_) = (missions / "traces").rglob("trace.json")
+    mission.write_text("mission edited")
+    monkeypatch.chdir(tmp_path_factory.mktemp("elsewhere"))
+    trace = trace.rename("moved.json")
+    assert bigactors("show", "--trace", str(trace))[::2] == (0, "picture written to port.svg\n")
+    assert bigactors("replay", str(trace))[::2] == (0, "")
 
 
 @pytest.mark.parametrize(
@@ -124,6 +173,8 @@ def test_the_mission_of_a_trace_is_found_beside_it(done, missions, monkeypatch, 
         ("[" * 100_000, "the text is nested too deeply"),
         ("[]", "the file names no mission"),
         ('{"mission": 3}', "the file names no mission"),
+        ('{"mission": "m", "text": "world"}', "m:1:6: LS"),
+        ('{"mission": "m", "text": "", "scheduler": 3}', "3 is not a valid Scheduler"),
         ('{"mission": "holds.mission"}', "this is no trace"),
         ('{"mission": "nowhere.mission"}', "nowhere.mission: there is no such file"),
         ('{"mission": "holds.mission", "schema": "bigactors.trace/1", "steps": 3}', "this is no trace"),

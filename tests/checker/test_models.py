@@ -209,5 +209,7 @@ def test_a_label_may_be_a_word():
 
 
 def test_a_mission_is_explored_from_its_initial_configuration():
-    with pytest.raises(TypeError, match=r"of a mission take `\.initial`"):
-        explore(load_mission("oil_spill"))
+    mission = load_mission("oil_spill")
+    assert explore(mission).size == explore(mission.initial).size == 34
+    with pytest.raises(TypeError, match="explore takes a mission, a configuration, or a model"):
+        explore("oil_spill")

@@ -18,8 +18,10 @@ from semantics.behaviours.commands import COMMANDS
 from semantics.behaviours.observations import QueryOperator
 from specs import syntax as s
 from specs.diagnostics import Source
+from specs.elaboration import read_mission
 from specs.formatter import format_mission, write_mission
 from specs.grammar import RESERVED, keywords
+from specs.missions import shipped_missions
 from specs.parser import parse
 
 CORPUS = Path(__file__).parents[1] / "corpus"
@@ -290,3 +292,17 @@ def test_an_empty_mission_is_empty():
 def test_an_angle_is_laid_out_with_the_marks_that_it_was_written_with():
     written = "world { a: B = point (37º 08′ 49.5″ N, -8.50) }"
     assert "point (37°08'49.5\"N, -8.5)" in format_mission(written)
+
+
+@pytest.mark.parametrize("name", sorted(shipped_missions()))
+def test_the_tree_of_a_mission_is_the_same_mission(name):
+    path = shipped_missions()[name]
+    text = path.read_text(encoding="utf-8")
+    built = read_mission(parse(Source(name, text)), path.parent)
+    assert built.initial == read_mission(text, path.parent).initial
+
+
+@pytest.mark.parametrize("name", ["x } world {", "", "uav 0"])
+def test_a_tree_that_is_another_mission_as_text_is_refused(name):
+    with pytest.raises(ValueError, match="the tree is another mission than its text"):
+        read_mission(s.Mission(s.Name(name), ()))

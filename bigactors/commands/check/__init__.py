@@ -70,6 +70,11 @@ def _report(parser: Parser) -> None:
         "ways names, and the least distance of two vehicles that may be under way together",
     )
     group.add_argument("--no-traces", action="store_true", help="print a short report, without traces")
+    group.add_argument(
+        "--all",
+        action="store_true",
+        help="print whole traces and all warnings (default: about a screen of each mission)",
+    )
 
 
 def _add_files(group: argparse._ActionsContainer) -> None:

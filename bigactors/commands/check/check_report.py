@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import sys
 from argparse import Namespace
+from collections import Counter, defaultdict
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -22,11 +23,12 @@ from checker import Interruption, report_text
 from checker.check import reductions_of
 from checker.engines.fast.numba_loading import ALONE
 from checker.limits import Stop
-from checker.reports.report import MARKS, coverage_text
-from checker.reports.results import caution_text
+from checker.reports.report import MARKS, SCREEN, coverage_text
+from checker.reports.results import Issue, caution_text
 from checker.verdicts import Outcome, Report
 from physical.wordings import counted
 from semantics.successors import rules_of
+from specs.codes import Code
 
 if TYPE_CHECKING:
     from bigactors.signatures import SigningKey
@@ -42,6 +44,22 @@ WORDS = {
     Exit.INCOMPLETE: (MARKS[Outcome.INCOMPLETE], "incomplete"),
     Exit.BUG: ("!", "internal error"),
 }
+
+
+MOST_ALIKE, MOST_GAPS = 3, 5
+"""The most warnings of one code, and the most gaps of coverage, on a screen."""
+
+CAUSES_OF_GAPS = frozenset(
+    code.number
+    for code in (
+        Code.NOTHING_QUANTIFIED,
+        Code.TWO_TYPES,
+        Code.ALWAYS_THE_SAME,
+        Code.NEVER_INSIDE,
+        Code.HIDES_AN_ENTITY,
+    )
+)
+"""The codes of warnings that are the cause of a gap of coverage in the same line."""
 
 
 def check_and_report(options: Namespace) -> Exit:
@@ -82,12 +100,14 @@ def report_all(
     for result in checked:
         results.append(result)
         if not alone:
-            for line in report_lines(result, traces=not options.no_traces, ways=options.ways):
+            for line in report_lines(
+                result, traces=not options.no_traces, ways=options.ways, everything=options.all
+            ):
                 say(coloured(line))
         if options.verdict and isinstance(result, Checked):
             keep_verdict(result, options, key)
         if options.trace and isinstance(result, Checked):
-            keep_evidence(result, options.trace, folders)
+            keep_evidence(result, options, folders)
     code = worst(result.exit for result in results)
     if len(results) > 1 and not alone:
         for line in summary(results):
@@ -96,14 +116,44 @@ def report_all(
     return code
 
 
-def report_lines(result: Checked | FailedMission, *, traces: bool, ways: bool = False) -> Iterator[str]:
-    """Yield the printed lines about one mission; none for a failed one, whose message is already printed."""
+def report_lines(
+    result: Checked | FailedMission, *, traces: bool, ways: bool = False, everything: bool = False
+) -> Iterator[str]:
+    """Yield the printed lines about one mission; none for a failed one, whose message is already printed.
+
+    They fit a screen, about, unless everything is wanted.
+    """
     if isinstance(result, FailedMission):
         return
     report = result.report if ways else replace(result.report, corridors=None)
-    for caution in cautions_of(result.mission):
-        yield from caution_text(result.name, caution)
-    yield from report_text(result.name, report, traces=traces)
+    cautions = cautions_of(result.mission)
+    before = list(_caution_lines(result.name, cautions, everything=everything))
+    after = list(_tally_lines(result, report, cautions, everything=everything))
+    yield from before
+    screen = None if everything else SCREEN - len(before) - len(after)
+    yield from report_text(result.name, report, traces=traces, screen=screen)
+    yield from after
+
+
+def _caution_lines(name: str, cautions: Sequence[Issue], *, everything: bool) -> Iterator[str]:
+    """Yield the warnings on a text, by default a few of each code."""
+    shown: Counter[str] = Counter()
+    left: defaultdict[str, list[int]] = defaultdict(list)
+    for caution in cautions:
+        shown[caution.rule] += 1
+        if everything or shown[caution.rule] <= MOST_ALIKE:
+            yield from caution_text(name, caution)
+        else:
+            left[caution.rule].append(caution.line)
+    for code, lines in left.items():
+        where = ", ".join(map(str, sorted(set(lines))))
+        yield f"{name}: warning: {code}: {len(lines)} more, in lines {where}: --all"
+
+
+def _tally_lines(
+    result: Checked, report: Report, cautions: Sequence[Issue], *, everything: bool
+) -> Iterator[str]:
+    """Yield the unused rules, the remedies for an incomplete check, and the coverage."""
     silent = [
         rule.__name__
         for rule in rules_of(result.mission.setting.control)
@@ -115,7 +165,14 @@ def report_lines(result: Checked | FailedMission, *, traces: bool, ways: bool = 
     if not report.complete:
         yield f"  to decide more: {remedies(result.mission, report)}"
     if report.coverage is not None:
-        yield from coverage_text(result.name, report.coverage, result.mission.source.text)
+        told = {caution.line for caution in cautions if caution.rule in CAUSES_OF_GAPS}
+        gaps = tuple(gap for gap in report.coverage.gaps if gap.line not in told)
+        shown = gaps if everything else gaps[:MOST_GAPS]
+        yield from coverage_text(
+            result.name, replace(report.coverage, gaps=shown), result.mission.source.text
+        )
+        if len(shown) < len(gaps):
+            yield f"  {counted(len(gaps) - len(shown), 'warning')} more: --all"
 
 
 def remedies(mission: ElaboratedMission, report: Report) -> str:
@@ -184,14 +241,15 @@ def keep_verdict(checked: Checked, options: Namespace, key: SigningKey | None) -
     tell(f"  verdict: {'holds' if data['holds'] else 'does not hold'}, written to {options.verdict}")
 
 
-def keep_evidence(checked: Checked, folder: str, taken: set[str]) -> None:
+def keep_evidence(checked: Checked, options: Namespace, taken: set[str]) -> None:
     """Write the traces of a mission into a folder of its own, and print their paths."""
     from bigactors.trace_files import write_evidence  # only --trace waits for pictures
 
+    folder, sources = options.trace, variation_of(options).sources
     stem = name = file_stem(Path(checked.name).stem)
     number = 2
     while name in taken:
         name, number = f"{stem}-{number}", number + 1
     taken.add(name)
-    for written in write_evidence(checked, Path(folder) / name):
+    for written in write_evidence(checked, Path(folder) / name, sources):
         tell(f"  trace: {written}/trace.html, .txt, .json and .svg")

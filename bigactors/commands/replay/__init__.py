@@ -72,14 +72,14 @@ def run(options: Namespace) -> Exit:
     """Replay a trace and print it; stop at a step that the rules do not allow."""
     from bigactors.commands.replay.trace_reader import is_foreign, read_trace
     from bigactors.commands.replay.waypoint_export import write_route
-    from bigactors.mission_lookup import opening, variation_of
+    from bigactors.mission_lookup import variation_of
     from checker import ReplayError, print_loop
     from semantics.state.printing import print_configuration
 
     if is_foreign(options.trace):
         return show_foreign(options)
     try:
-        found = read_trace(options.trace, options.mission, opening(variation_of(options)))
+        found = read_trace(options.trace, options.mission, variation_of(options))
     except ReplayError as error:
         tell(f"{options.trace}: {error}")
         return Exit.VIOLATED
@@ -103,7 +103,7 @@ def show_foreign(options: Namespace) -> Exit:
     from textwrap import indent
 
     from bigactors.commands.replay.trace_reader import account_for, watched_in
-    from bigactors.mission_lookup import opening, variation_of
+    from bigactors.mission_lookup import variation_of
     from bigraphs import draw_text
     from physical.wordings import counted
     from semantics.state.abstraction import all_as_it_is
@@ -112,7 +112,7 @@ def show_foreign(options: Namespace) -> Exit:
         raise Mistake(
             "a recording by other programs has no destinations", "leave out --waypoints", options.trace
         )
-    _, shown = watched_in(options.trace, options.mission, opening(variation_of(options)), dict(options.name))
+    _, shown = watched_in(options.trace, options.mission, variation_of(options), dict(options.name))
     for line in paced(shown.trace, shown.times, options.speed, stepwise=options.step):
         say(line)
     for finding in shown.findings:

@@ -1,27 +1,25 @@
 """Traces in files: of the checker, recordings of runs, and recordings by other programs."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 from adapters.recording.recording_reader import Recording, is_recording
 from bigactors.commands.replay.foreign_recordings import TELEMETRY, ForeignRecording, watched
 from bigactors.files import read_bytes, read_json
-from bigactors.mission_lookup import digest_of
+from bigactors.mission_lookup import digest_of, from_text, open_mission
 from bigactors.mistakes import Mistake
 from bigactors.recordings import mission_of, open_recording, trace_of
 from bigactors.terminal import tell
 from checker import Trace, replay
 from physical.nmea_lines import has_frame
 from semantics.races.monitor import monitored
-from specs.elaboration import ElaboratedMission
+from semantics.state.setting import Control, Scheduler
+from specs.elaboration import ElaboratedMission, Variation
 from specs.missions import shipped_missions
 
 AIS = (".nmea", ".ais")
-
-Open = Callable[[str], ElaboratedMission]
-"""Returns a mission by its path or name."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,52 +53,74 @@ def account_for(path: str, shown: ForeignRecording, write: Callable[[str], None]
 
 
 def watched_in(
-    path: str, mission_file: str | None, open_mission: Open, names: dict[str, str]
+    path: str, mission_file: str | None, variation: Variation, names: dict[str, str]
 ) -> tuple[ElaboratedMission, ForeignRecording]:
     """Return a foreign recording in the places of a mission; raises Mistake without a mission."""
     if mission_file is None:
         hint = "give a mission for its places: replay --mission FILE, show FILE"
         raise Mistake("this is no trace of ours", hint, path)
-    mission = open_mission(mission_file)
+    mission = open_mission(mission_file, variation)
     return mission, watched(path, mission, names)
 
 
 def read_trace(
-    path: str, mission_file: str | None, open_mission: Open, names: dict[str, str] | None = None
+    path: str, mission_file: str | None, variation: Variation, names: dict[str, str] | None = None
 ) -> Replayed:
     """Return the trace in a file, replayed on its mission; warn of a trace of another mission.
 
-    A foreign recording gives a trace of the mission's world; `names` maps its sources to names in the mission.
+    Without a mission's file, the mission is the one whose text is in the trace. A foreign recording gives a trace of
+    the mission's world; `names` maps its sources to names in the mission.
 
     Raises:
         Mistake: The file holds no trace, or its mission cannot be read.
         ReplayError: The mission does not allow the trace.
     """
     if is_recording(path):
-        return _read_recording(path, mission_file, open_mission)
+        return _read_recording(path, mission_file, variation)
     if is_foreign(path):
-        mission, shown = watched_in(path, mission_file, open_mission, names or {})
+        mission, shown = watched_in(path, mission_file, variation, names or {})
         account_for(path, shown, tell)
         return Replayed(mission, shown.trace, times=shown.times)
     data = read_json(path)
     named = data.get("mission") if isinstance(data, dict) else None
     if mission_file is None and not isinstance(named, str):
         raise Mistake("the file names no mission: it is no trace", "give the mission with --mission", path)
-    mission = open_mission(mission_file or _beside(path, str(named)))
-    _warn_of_another(path, data, mission, mission_file or str(named))
+    mission = _mission_of(path, data, mission_file, variation)
     try:
         start = monitored(mission.initial) if data.get("monitored") is True else mission.initial
-        return Replayed(mission, replay(start, data))
+        trace = replay(start, data)
     except ValueError as error:
         raise Mistake(str(error), place=path) from error
+    _warn_of_another(path, data, mission, mission_file or str(named))
+    return Replayed(mission, trace)
 
 
-def _read_recording(path: str, mission_file: str | None, open_mission: Open) -> Replayed:
+def _mission_of(path: str, data: dict[str, Any], file: str | None, variation: Variation) -> ElaboratedMission:
+    """Return the mission of a trace: the file's, the one whose text is in it, or the one that it names."""
+    if file is None and isinstance(data.get("text"), str):
+        return from_text(data, _as_written(path, data, variation))
+    return open_mission(file or _beside(path, str(data["mission"])), variation)
+
+
+def _as_written(path: str, data: dict[str, Any], variation: Variation) -> Variation:
+    """Return the variation under which a trace was written, with what the options replace."""
+    written = data.get("scheduler"), data.get("control")
+    try:
+        scheduler = variation.scheduler or (written[0] and Scheduler(written[0]))
+        control = variation.control or (written[1] and Control(written[1]))
+    except ValueError as error:
+        hint = "check --trace and simulate write the scheduler and the control of the mission"
+        raise Mistake(str(error), hint, path) from error
+    return replace(variation, scheduler=scheduler or None, control=control or None)
+
+
+def _read_recording(path: str, mission_file: str | None, variation: Variation) -> Replayed:
     recording = open_recording(path)
-    mission = mission_of(recording) if mission_file is None else open_mission(mission_file)
+    mission = mission_of(recording) if mission_file is None else open_mission(mission_file, variation)
+    trace = trace_of(recording, mission)
     _warn_of_another(path, recording.run, mission, mission_file or str(recording.run["mission"]))
     times = tuple(message.time for message in recording.of("steps"))
-    return Replayed(mission, trace_of(recording, mission), recording, times)
+    return Replayed(mission, trace, recording, times)
 
 
 def _beside(trace: str, mission: str) -> str:

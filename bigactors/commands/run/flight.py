@@ -37,7 +37,7 @@ from bigactors.commands.run.way_checks import check_ways, watchable
 from bigactors.exits import Exit
 from bigactors.files import check_writable
 from bigactors.flight_watchers import Log, Tape, Terminal
-from bigactors.mission_lookup import checkable, digest_of, fixed_places, locate, open_mission
+from bigactors.mission_lookup import checkable, digest_of, fixed_places, locate, open_mission, text_json
 from bigactors.mistakes import Mistake, unreadable
 from bigactors.recordings import Resumed, resume
 from bigactors.signatures import load_trusted
@@ -276,9 +276,7 @@ def run_json(flight: Flight) -> dict[str, Any]:
     options, mission = flight.options, flight.mission
     return {
         "mission": options.file,
-        "text": mission.source.text,
-        "folder": str(locate(options.file).absolute().parent),
-        "sources": {name: str(Path(file).absolute()) for name, file in options.source},
+        **text_json(mission, options.file, {name: Path(file) for name, file in options.source}),
         "digest": digest_of(mission),
         "version": __version__,
         "verified": flight.licence is not None,

@@ -181,14 +181,14 @@ def _write_tracks(options: Namespace) -> Exit:
 def _compare(options: Namespace) -> Exit:
     """Print the point at which two traces part, and the differences from there."""
     from bigactors.commands.replay.trace_reader import read_trace
-    from bigactors.mission_lookup import opening, variation_of
+    from bigactors.mission_lookup import variation_of
     from checker.reports.trace_comparison import comparison_text
 
     if options.trace is None:
         raise Mistake("--against is for two traces", "give the other one with --trace")
-    opened, names = opening(variation_of(options)), dict(options.name)
+    variation, names = variation_of(options), dict(options.name)
     both = (options.trace, options.against)
-    one, other = (read_trace(path, options.file, opened, names).trace for path in both)
+    one, other = (read_trace(path, options.file, variation, names).trace for path in both)
     for line in comparison_text(one, other, (options.trace, options.against)):
         say(line)
     return Exit.HOLDS
@@ -259,7 +259,7 @@ def _write(
 def _chosen(options: Namespace) -> tuple[str, Trace, tuple[float, ...], int, tuple[Property, ...]]:
     """Return the mission's name, its trace, the steps' times, the configuration to show, and the properties."""
     from bigactors.commands.replay.trace_reader import read_trace
-    from bigactors.mission_lookup import open_mission, opening, variation_of
+    from bigactors.mission_lookup import open_mission, variation_of
     from checker import Trace
 
     if options.trace is None:
@@ -276,7 +276,7 @@ def _chosen(options: Namespace) -> tuple[str, Trace, tuple[float, ...], int, tup
             raise Mistake(f"{word} a trace", "give the trace with --trace")
         mission = open_mission(options.file, variation_of(options))
         return mission.name, Trace(mission.initial), (), 0, mission.properties
-    found = read_trace(options.trace, options.file, opening(variation_of(options)), dict(options.name))
+    found = read_trace(options.trace, options.file, variation_of(options), dict(options.name))
     trace = found.trace
     step = len(trace) if options.step is None else options.step
     if step > len(trace):

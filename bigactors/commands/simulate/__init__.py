@@ -69,8 +69,8 @@ def run(options: Namespace) -> Exit:
     """Print one run; write it as a trace on request."""
     from bigactors.commands.simulate.one_run import print_simulation, simulate
     from bigactors.files import json_text, write_json
-    from bigactors.mission_lookup import digest_of, open_mission, variation_of
-    from checker import to_json
+    from bigactors.mission_lookup import open_mission, variation_of
+    from bigactors.trace_files import trace_json
 
     if options.choose and options.json == "-":
         raise Mistake("--choose talks on standard output", "write the trace to a file: --json FILE")
@@ -83,7 +83,7 @@ def run(options: Namespace) -> Exit:
         for line in print_simulation(simulation) if options.json != "-" else ():
             say(line)
     if options.json:
-        data = to_json(run.trace, options.file, digest_of(mission))
+        data = trace_json(run.trace, options.file, mission, variation_of(options).sources)
         say_text(json_text(data)) if options.json == "-" else write_json(options.json, data)
     if options.json not in (None, "-"):
         tell(f"trace written to {options.json}")
