@@ -5,22 +5,25 @@ from functools import cache
 from importlib.resources import files
 from typing import Final
 
+from adapters import console
+from bigactors import studio
+
 MODULES: Final = (
-    ("adapters.console", "page/parts/preact.js"),
-    ("adapters.console", "page/ui.js"),
-    ("adapters.console", "page/store.js"),
-    ("adapters.console", "page/bigraph.js"),
-    ("bigactors.studio", "page/explorer.js"),
-    ("bigactors.studio", "page/trace.js"),
+    (console, "page/parts/preact.js"),
+    (console, "page/ui.js"),
+    (console, "page/store.js"),
+    (console, "page/bigraph.js"),
+    (studio, "page/explorer.js"),
+    (studio, "page/trace.js"),
 )
 """The modules of a trace's page, each after those that it imports."""
 
 STYLES: Final = (
-    ("adapters.console", "page/style.css"),
-    ("bigactors.studio", "page/explorer.css"),
-    ("bigactors.studio", "page/trace.css"),
+    (console, "page/style.css"),
+    (studio, "page/explorer.css"),
+    (studio, "page/trace.css"),
 )
-LICENSES: Final = ("adapters.console", "page/parts/LICENSES.txt")
+LICENSES: Final = (console, "page/parts/LICENSES.txt")
 LICENSED: Final = ("htm", "preact")
 
 _IMPORT: Final = re.compile(r'^import \{([^}]*)\} from "[^"]*?([\w-]+)\.js";$', re.MULTILINE)

@@ -43,7 +43,7 @@ def values_here(properties: Sequence[Property], here: Visit) -> list[dict[str, A
     for each in properties:
         value, words = _value(each, here)
         bad = value is False and (each.kind is PropertyKind.INVARIANT or _is_standard(each))
-        said = {"name": each.name, "kind": each.kind.value, "formula": each.written}
+        said: dict[str, Any] = {"name": each.name, "kind": each.kind.value, "formula": each.written}
         found.append(said | {"value": value, "words": words, "bad": bad})
     return found
 
