@@ -134,7 +134,7 @@ def _looks(story: Story, held: Sequence[int]) -> tuple[list[str], list[dict[str,
             "values": values_here(asked, Visit(c, Expansion((), ()), (), raced=False)),
             "pictures": [
                 None if svg is None else pictures.setdefault(svg, len(pictures))
-                for svg in (*(None if each is None else each.picture.svg for each in drawn), legend)
+                for svg in (*(None if each is None else each.svg for each in drawn), legend)
             ],
             "text": text_of(c),
             "places": places_text(c),
