@@ -94,9 +94,7 @@ def telling(story: Story) -> PageContent:
         "order": order,
         "looks": looks,
         "pictures": pictures,
-        "dates": [
-            trace.date(n) or (f"{story.times[n]:.1f} s" if story.times else "") for n in range(len(trace))
-        ],
+        "dates": [trace.date(n) for n in range(len(trace))] if trace.dates else [],
         "moments": list(trace.moments)
         or [round(1000 * max(0.0, each - story.times[0])) for each in story.times],
         "roles": {} if trace.race is None else trace.race.roles,

@@ -199,7 +199,7 @@ export function Lanes({ look, go }) {
   const begin = Math.max(0, Math.min(current - MOST_ROWS / 2, rows.length - MOST_ROWS));
   const shown = rows.slice(begin, begin + MOST_ROWS);
   const lapses = lapsesOf(look);
-  const longest = Math.max(1, ...lapses);
+  const longest = lapses.reduce((most, lapse) => Math.max(most, lapse), 1);
   const hits = wish ? look.steps.flatMap((step, n) => (`${step.words} ${step.label} c${n + 1}`.toLowerCase().includes(wish) ? [n + 1] : [])) : [];
   const found = new Set(hits);
   const seek = (event) => {
