@@ -151,7 +151,7 @@ function Choices({ look, take }) {
   const agents = [...new Set(look.choices.map(({ agent }) => agent))];
   return html`<section class="choices" aria-label="Possible steps">
     ${look.choices.length === 0 && html`<p class="none">${look.nothing}</p>`}
-    ${agents.map((agent) => html`<div key=${agent ?? ""}><h3>${agent ?? "environment"}</h3>
+    ${agents.map((agent) => html`<div key=${agent ?? ""}><h2>${agent ?? "environment"}</h2>
       <ul>${look.choices.filter((each) => each.agent === agent).map((each) => html`<${Choice} key=${each.step} choice=${each} take=${take} />`)}</ul></div>`)}
   </section>`;
 }
@@ -252,6 +252,6 @@ const Step = ({ step }) => html`<div class=${`step ${step.sort}`} title=${step.l
 /** The agents and the pending requests; new ones are marked. */
 function Parts({ parts }) {
   if (!parts) return null;
-  const list = (sign, gloss, lines) => html`<div><h3>${sign} <small>${gloss}</small></h3><ul>${lines.length === 0 ? html`<li>∅</li>` : lines.map(([text, isNew], n) => html`<li key=${n} class=${isNew ? "new" : ""}>${text}</li>`)}</ul></div>`;
+  const list = (sign, gloss, lines) => html`<div><h2>${sign} <small>${gloss}</small></h2><ul>${lines.length === 0 ? html`<li>∅</li>` : lines.map(([text, isNew], n) => html`<li key=${n} class=${isNew ? "new" : ""}>${text}</li>`)}</ul></div>`;
   return html`<div class="parts">${list("α", "agents", parts.agents)}${list("η", "pending requests", parts.requests)}</div>`;
 }
