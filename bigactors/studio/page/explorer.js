@@ -91,7 +91,7 @@ export function Explorer({ ask, state = NOTHING, onLook = () => {}, keys = null 
 /** The causes of what the run ends in, each with a link to its step. */
 export function Story({ look, go }) {
   if (look.causes.length === 0) return null;
-  return html`<p class="story">${look.causes.map(({ step, text }, n) => html`${n > 0 && html`<span class="then"> · </span>`}<a key=${step} href=${`#c${step}`} aria-current=${step === look.at ? "step" : null} onClick=${(event) => (event.preventDefault(), go(step))}>
+  return html`<p class="story">${look.causes.map(({ step, text }, n) => html`${n > 0 && html`<span class="then"> · </span>`}<a key=${n} href=${`#c${step}`} aria-current=${step === look.at ? "step" : null} onClick=${(event) => (event.preventDefault(), go(step))}>
     ${text} <span class="at">at c${step}</span></a>`)}</p>`;
 }
 
