@@ -61,7 +61,7 @@ OWN = {
     "bigactors/lsp/language_server.py",
     "bigactors/lsp/worker.py",
     "bigactors/notebook.py",
-    "bigactors/pages/trace_page.py",
+    "bigactors/pages/scripts.py",
     "bigraphs/examples/__init__.py",
     "bigraphs/exports/html.py",
     "checker/engines/cluster/ray_crew.py",

@@ -9,6 +9,8 @@ const ATTRIBUTES = new Set(["d", "x", "y", "x1", "x2", "y1", "y2", "dx", "dy", "
 /** A reference to something outside the picture. */
 const ELSEWHERE = /url\s*\((?!\s*['"]?#)/i;
 const LARGEST = 12;
+/** The least height in pixels of a picture's lettering. */
+const LEAST = 11;
 
 /**
  * Convert a picture to elements of this page: shapes and text only. Script sets its styles, since the page's policy refuses
@@ -59,14 +61,27 @@ function captionOf(pictured, step) {
 export function Bigraph({ app }) {
   const [bigraph] = useSections(app.store, ["bigraph"], 200);
   const [svg, text, step, drawn] = ["svg", "text", "step", "drawn"].map((key) => bigraph.get(key) ?? null);
+  return html`<${Drawing} svg=${svg} text=${text} called="The bigraph" caption=${(words) => captionOf(words || !svg ? step : drawn, step)} />`;
+}
+
+/**
+ * A picture that can be moved and enlarged, and its text form. At first it is whole, unless its lettering (`lettering` high
+ * in its own units) would then be too small to read.
+ */
+export function Drawing({ svg, text, called, caption, lettering = 0 }) {
   const frame = useRef(null);
   const view = useRef({ box: null, whole: null });
   const [words, setWords] = useState(false);
 
   const show = () => frame.current?.firstElementChild?.setAttribute("viewBox", view.current.box.join(" "));
+  /** Show the whole picture, or its middle part if the lettering of the whole would be too small to read. */
   const fit = () => {
     if (!view.current.whole) return;
-    view.current.box = [...view.current.whole];
+    const [x, y, width, height] = view.current.whole;
+    const { clientWidth, clientHeight } = frame.current;
+    const scale = Math.min(clientWidth / width, clientHeight / height) || 1;
+    const part = Math.min(1, lettering ? (scale * lettering) / LEAST : 1);
+    view.current.box = [x + (width * (1 - part)) / 2, y + (height * (1 - part)) / 2, width * part, height * part];
     show();
   };
   /** Enlarge around a point, given in fractions of the frame. */
@@ -92,8 +107,9 @@ export function Bigraph({ app }) {
     if (!drawn) return;
     drawn.root.setAttribute("aria-hidden", "true"); // readers of the screen get the text
     const same = view.current.whole?.join() === drawn.size.join();
-    view.current = { whole: drawn.size, box: same ? view.current.box : [...drawn.size] };
-    show();
+    view.current = { whole: drawn.size, box: view.current.box };
+    if (same) show();
+    else fit();
   }, [svg, words]);
 
   useEffect(() => {
@@ -128,10 +144,10 @@ export function Bigraph({ app }) {
       <button type="button" onClick=${() => zoom(0.8)} disabled=${words} aria-label="make smaller">−</button>
       <button type="button" onClick=${fit} disabled=${words}>Fit</button>
       <button type="button" aria-pressed=${String(words)} onClick=${() => setWords(!words)}>Text</button>
-      <span class="quiet">${captionOf(words || !svg ? step : drawn, step)}</span></p>
+      <span class="quiet">${caption(words)}</span></p>
     ${words || !svg
       ? html`<pre tabindex="0" key="text">${text}</pre>`
-      : html`<div key="picture" class="frame" ref=${frame} tabindex="0" role="img" aria-label=${`The bigraph: ${text ?? "see the picture"}`} onPointerMove=${drag} onKeyDown=${keys}
+      : html`<div key="picture" class="frame" ref=${frame} tabindex="0" role="img" aria-label=${`${called}: ${text ?? "see the picture"}`} onPointerMove=${drag} onKeyDown=${keys}
           onPointerDown=${(event) => event.currentTarget.setPointerCapture(event.pointerId)} onDblClick=${fit}></div>`}
   </div>`;
 }
