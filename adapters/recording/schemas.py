@@ -326,7 +326,14 @@ PREFLIGHT: Final = _object(
         "items": {
             "type": "object",
             "required": ["what", "done", "detail"],
-            "properties": {"what": _TEXT, "done": {"type": "boolean"}, "detail": _TEXT},
+            "properties": {
+                "what": _TEXT,
+                "done": {"type": "boolean"},
+                "detail": _TEXT,
+                "vehicle": {**_TEXT, "description": "The vehicle that is checked."},
+                "fence": {**_TEXT, "description": "The fence that was read back from it, in words."},
+                "refuses": {**_TEXTS, "description": "Its recent reasons why it cannot be armed."},
+            },
         },
     },
     by={**_TEXT, "description": "Who has pressed Start."},

@@ -146,7 +146,7 @@ function Place({ card }) {
 }
 
 /** The age of a vehicle's last message, marked when it is old; its time of day once the run has stopped listening. */
-function LinkAge({ app, link, unknown }) {
+export function LinkAge({ app, link, unknown }) {
   if (unknown && link.heard !== null) return html`<span class="link bad">last heard ${utc(link.heard)}</span>`;
   if (link.lost) return html`<span class="link bad">link lost${link.heard !== null && html` <${Age} clock=${app.clock} time=${link.heard} />`}</span>`;
   if (link.heard === null) return html`<span class="link quiet">not heard</span>`;
@@ -157,7 +157,7 @@ function LinkAge({ app, link, unknown }) {
   return html`<${Ticking} clock=${app.clock} apply=${apply} class="link" />`;
 }
 
-function Battery({ battery }) {
+export function Battery({ battery }) {
   if (!battery || !isNumber(battery.percent)) return null;
   const low = battery.percent < 25;
   return html`<span class=${`battery ${low ? "bad" : ""}`} title=${isNumber(battery.volts) ? `battery, ${battery.volts.toFixed(1)} V` : "battery"}>

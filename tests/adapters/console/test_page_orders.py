@@ -274,6 +274,7 @@ def waiting(state, *done):
     """Return the section of a run that waits, with what is done."""
     what = ["the mission is verified", "uav0 is heard", "places and fences fit the vehicles"]
     items = [{"what": each, "done": n in done, "detail": ""} for n, each in enumerate(what)]
+    items[1] |= {"vehicle": "uav0", "fence": "as given", "refuses": ["PreArm: Compass not calibrated"]}
     return {"state": state, "by": "", "items": items}
 
 
@@ -282,13 +283,25 @@ def read_what_is_still_to_be_done(ana, bo):
     for each in (ana, bo):
         each.sees(".preflight", "Before the start: nothing is commanded yet")
         each.sees(".preflight .start:disabled")
-        assert each.count(".preflight .open") == 2
+        assert each.count(".preflight .open") == 3  # and a station is not reached
+        each.sees(".preflight .open", "station lagos is reached: not yet")
+        each.sees(".preflight tr.open", "not heard")
 
 
 def start_it_when_all_is_done(ana, bo):
     ana.harness.change(preflight=waiting("ready", 0, 1, 2))
     for each in (ana, bo):
         each.sees(".preflight .start:enabled")
+        (row,) = each.texts(".preflight tbody tr")
+        for what in (
+            "uav0",
+            "37°00.000′N 008°42.000′W",
+            "GUIDED, armed",
+            "78 %",
+            "as given",
+            "Compass not calibrated",
+        ):
+            assert what in row
         box = each.box(".preflight .start")
         assert box["x"] >= 0
         assert box["x"] + box["width"] <= each.page.viewport_size["width"]
