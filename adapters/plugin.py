@@ -474,12 +474,14 @@ class Presence:
         time: Time of the report.
         reached: Whether it is reached; None while that is not known yet.
         heard: Time of its last answer; None before the first.
+        agrees: Whether its L is the same as ours; None while that is not known.
     """
 
     station: str
     time: float
     reached: bool | None
     heard: float | None
+    agrees: bool | None = None
 
 
 Seen = Status | StatusText | Presence

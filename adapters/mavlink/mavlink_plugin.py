@@ -17,8 +17,8 @@ from adapters.mavlink.constants import GROUND_COMPONENT, GROUND_STATION, NO_AUTO
 from adapters.mavlink.inventory import overheard
 from adapters.mavlink.keys import Keeper
 from adapters.mavlink.message import MavlinkMessage, say
-from adapters.mavlink.onboard_fences import fence_on_board
 from adapters.mavlink.objections import impassable, remarks, unfit
+from adapters.mavlink.onboard_fences import fence_on_board
 from adapters.mavlink.pilot import Outcome, Pilot
 from adapters.mavlink.roster import Roster
 from adapters.mavlink.signing import Verdict

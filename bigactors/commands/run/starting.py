@@ -19,7 +19,7 @@ EVERY: Final = 0.25
 """Seconds between two updates of the list of checks."""
 
 Item = dict[str, Any]
-"""A check before the start: its name `what`, its state `done`, and its `detail`; for a `vehicle`, its readiness, too."""
+"""A check before the start: its name `what`, its state `done`, its `detail`; for a `vehicle` its readiness, too."""
 
 Telling = Callable[[dict[str, Any], float], None]
 """Takes the list of checks, and the time."""
