@@ -342,7 +342,7 @@ function Screen({ app }) {
     <${NotConnected} app=${app} />
     <${Alert} app=${app} />
     <${Preflight} app=${app} key="preflight" />
-    ${phone && html`<${TabList} key="tabs" app=${app} phone=${true} />`}
+    ${phone && html`<nav key="tabs" aria-label="Tabs"><${TabList} app=${app} phone=${true} /></nav>`}
     <main key="main">
       <section class="map-area" id="area-map" aria-label="Map" key="map"><${MapElement} app=${app} /><${MapTools} app=${app} />${phone && html`<${Subject} app=${app} />`}</section>
       <aside key="side" id="area-vehicles">

@@ -10,7 +10,7 @@ export function Orders({ app, name, card: { taken, on_return: onReturn } }) {
   if (!act) return null;
   const order = (which) => () => app.act({ order: { order: which, vehicle: name } }, { what: which, about: name });
   return html`<div class="orders">
-    ${taken && html`<${HeldButton} key="back" label=${`Give ${name} back`} tell=${app.tell} act=${() => app.act({ give_back: { vehicle: name } }, { what: "give back", about: name })}>Give back<//>`}
+    ${taken && html`<${HeldButton} key="back" label=${`Give back ${name}`} tell=${app.tell} act=${() => app.act({ give_back: { vehicle: name } }, { what: "give back", about: name })}>Give back<//>`}
     <${HeldButton} key="hold" label=${`Hold ${name}`} tell=${app.tell} act=${order("hold")}>Hold<//>
     <${HeldButton} key="return" label=${`Return ${name}${onReturn ? `, ${onReturn}` : ""}`} short=${`Return ${name}`} tell=${app.tell} act=${order("return")}>Return<//>
   </div>`;

@@ -13,7 +13,7 @@ export function Preflight({ app }) {
   const items = preflight.get("items") ?? [];
   const rows = items.filter(({ vehicle }) => vehicle).sort((a, b) => byName(a.vehicle, b.vehicle));
   const others = [...stations].filter(([, { here }]) => !here).sort(([a], [b]) => byName(a, b));
-  return html`<section class="preflight" aria-labelledby="preflight-title">
+  return html`<section class="preflight" aria-labelledby="preflight-title" tabindex="0">
     <div class="head"><h2 id="preflight-title">Before the start: nothing is commanded yet</h2>
     ${act ? html`<${HeldButton} kind="start" label="Start the run" tell=${app.tell} disabled=${state !== "ready"} act=${start}>Start<//>` : html`<p class="quiet">Somebody who may act has to press Start.</p>`}</div>
     <ul>${items.filter(({ vehicle }) => !vehicle).map((item) => html`<${Check} key=${item.what} ...${item} />`)}

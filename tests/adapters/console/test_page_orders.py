@@ -157,7 +157,7 @@ def orders_all_and_gives_one_back(ana):
         ana.holds(f"[aria-label^='{which.title()} all']")
         ana.sees(".notice.sent", f"{which} all: sent, not confirmed yet")
     ana.opens("uav1")
-    ana.holds("[aria-label^='Give uav1 back']")
+    ana.holds("[aria-label^='Give back uav1']")
     ana.sees(".notice.confirmed", "give back uav1: done")
     orders = [{"order": {"order": each, "vehicle": None}} for each in ("hold", "return")]
     assert ana.asked() == [*orders, {"give_back": {"vehicle": "uav1"}}]
