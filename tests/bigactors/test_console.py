@@ -200,7 +200,10 @@ def test_an_operator_acts_and_sees_what_becomes_of_it_and_the_run_outlives_its_c
         assert await ana.act(say={"agent": "op", "message": "status"}) == ""
         await ana.until(lambda state: [each["left"] for each in state["sayings"].values()] == [1])
         assert "permitted now" in await ana.act(say={"agent": "op", "message": "land"})
-        assert await ana.act(order={"order": "hold", "vehicle": "uav0"}) == ""
+        assert await ana.act(note={"text": "a boat crosses"}) == ""
+        await ana.until(lambda state: "confirmed" in fate(state, "note"))
+        assert await ana.act(note={"text": " "}) == "the note is empty"
+        assert await ana.act(order={"order": "hold", "vehicle": ["uav0"]}) == ""
         await ana.until(lambda state: "confirmed" in fate(state, "hold"))
         card = ana.state["vehicles"]["uav0"]
         assert "Ana" in card["taken"]
@@ -217,6 +220,7 @@ def test_an_operator_acts_and_sees_what_becomes_of_it_and_the_run_outlives_its_c
         told = read_recording(recording)
         assert [message.data["by"] for message in told.of("orders")] == ["Ana"]
         assert [message.data["by"] for message in told.of("given_back")] == ["Ana"]
+        assert [message.data for message in told.of("notes")] == [{"text": "a boat crosses", "by": "Ana"}]
         os.kill(console, signal.SIGKILL)
         assert any("the run goes on without it" in line for line in process.stdout)
         process.send_signal(signal.SIGINT)
