@@ -165,7 +165,7 @@ def _said_by(said: Mapping[object, object], by: str) -> Said | None:
         case {"order": "hold" | "return" as order, "vehicle": [str(), *_] as several} if all(
             map(is_text, several)
         ):
-            return Ordering(Fallback(order), tuple(dict.fromkeys(several)), by)
+            return Ordering(Fallback(order), tuple(dict.fromkeys(filter(is_text, several))), by)
         case {"acknowledge": int(number)} if not isinstance(number, bool):
             return Acknowledging(number, by)
         case {"note": str(text)} if is_text(text):
