@@ -95,6 +95,7 @@ def test_a_note_is_recorded_with_a_name_and_the_map_and_the_report_are_saved(ope
 
 def test_one_tab_leaves_the_map_and_the_verdict_says_its_whole_name(operates):
     ana = operates()
+    ana.sees(".map-leaflet.leaflet-container")
     ana.presses("m")
     ana.sees_that("() => document.activeElement.matches('.map-leaflet')")
     ana.presses("Tab")
