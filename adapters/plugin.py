@@ -474,12 +474,14 @@ class Presence:
         time: Time of the report.
         reached: Whether it is reached; None while that is not known yet.
         heard: Time of its last answer; None before the first.
+        agrees: Whether its L is the same as ours; None while that is not known.
     """
 
     station: str
     time: float
     reached: bool | None
     heard: float | None
+    agrees: bool | None = None
 
 
 Seen = Status | StatusText | Presence
@@ -551,6 +553,19 @@ class Plugin(Protocol):
         ...
 
 
+@dataclass(frozen=True, slots=True)
+class Readiness:
+    """A vehicle's readiness before take-off.
+
+    Attributes:
+        fence: The fence that was read back from it, in words.
+        refuses: Its recent reasons why it cannot be armed.
+    """
+
+    fence: str
+    refuses: tuple[str, ...] = ()
+
+
 @runtime_checkable
 class Preflight(Protocol):
     """The checks before take-off of a plugin with vehicles, as far as the vehicles have reported."""
@@ -570,6 +585,10 @@ class Preflight(Protocol):
 
     def remarks(self) -> Iterable[str]:
         """Return messages to the operator."""
+        ...
+
+    def readiness(self, entity: str) -> Readiness:
+        """Return a vehicle's readiness, as it was last reported."""
         ...
 
     def objection(self, entity: str, place: Geometry, name: str, around: Surroundings) -> str | None:
@@ -630,6 +649,7 @@ __all__ = [
     "Plugin",
     "Presence",
     "Published",
+    "Readiness",
     "Rebind",
     "Refused",
     "Rejected",

@@ -86,13 +86,13 @@ def arguments() -> ArgumentParser:
 def main() -> int:
     """Fly the demonstration into a folder; return the exit code."""
     asked = arguments().parse_args()
-    return reported(lambda: _demonstrated(asked))
+    return reported(lambda: demonstrate(asked.folder, asked.speed, console=asked.console))
 
 
-def _demonstrated(asked: Namespace) -> int:
-    folder: Path = asked.folder
-    speed = asked.speed or (FOLLOWED if asked.console else None)
-    more = ("--console", "--at-once") if asked.console else ()
+def demonstrate(folder: Path, speed: float | None = None, *, console: bool = False) -> int:
+    """Fly the demonstration into a folder, with the operator's console if requested; return the exit code."""
+    speed = speed or (FOLLOWED if console else None)
+    more = ("--console", "--at-once") if console else ()
     began = time.monotonic()
     _prepare(folder)
     verdict = str(folder / "verdict.json")

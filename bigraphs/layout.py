@@ -15,6 +15,7 @@ from typing import Final, TypeAlias
 
 from bigraphs.bigraph import Bigraph, Link, Place, children, points, sites_in
 from bigraphs.node_aggregation import Folded, folded
+from bigraphs.node_labels import natural
 from physical.svg import text_width
 
 FONT: Final = 10.0
@@ -95,14 +96,17 @@ Size: TypeAlias = tuple[float, float]
 Rows: TypeAlias = tuple[tuple[BoxSubject, ...], ...]
 
 
-def layout(bigraph: Bigraph, apart: Collection[str] = frozenset()) -> Layout:
+def layout(
+    bigraph: Bigraph, apart: Collection[str] = frozenset(), marked: Collection[str] = frozenset()
+) -> Layout:
     """Return the boxes of a drawing; they depend on the bigraph alone.
 
-    In a large bigraph one box stands for several similar nodes; the nodes in `apart` have their own boxes.
+    In a large bigraph one box stands for several similar nodes, either all `marked` or none; the nodes in `apart` have
+    their own boxes.
     """
-    shown = folded(bigraph, apart)
+    shown = folded(bigraph, apart, marked)
     bigraph = shown.bigraph
-    tree = _tree(bigraph)
+    tree = _tree(shown)
     sizes: dict[BoxSubject, Size] = {}
     rows: dict[BoxSubject, Rows] = {}
     headers: dict[BoxSubject, float] = {}
@@ -158,8 +162,9 @@ def label_size(shown: Folded, item: BoxSubject) -> Size:
     )
 
 
-def _tree(bigraph: Bigraph) -> dict[BoxSubject, list[BoxSubject]]:
+def _tree(shown: Folded) -> dict[BoxSubject, list[BoxSubject]]:
     """Return the items drawn in each region and node: nodes in their first place, ghosts in the others."""
+    bigraph = shown.bigraph
     inside, sited = children(bigraph), sites_in(bigraph)
     tree: dict[BoxSubject, list[BoxSubject]] = {}
     for place, nodes in inside.items():
@@ -167,7 +172,7 @@ def _tree(bigraph: Bigraph) -> dict[BoxSubject, list[BoxSubject]]:
             BoxSubject("node", number)
             if bigraph.nodes[number].parents[0] == place
             else BoxSubject("ghost", number, place)
-            for number in nodes
+            for number in sorted(nodes, key=lambda number: natural(shown.lines[number][0]))
         ]
         drawn += [BoxSubject("site", site, place) for site in sited.get(place, ())]
         tree[BoxSubject("node", place) if place >= 0 else BoxSubject("region", ~place)] = drawn

@@ -1,6 +1,6 @@
 """Folding: in a large picture, one box stands for several similar nodes and shows their number.
 
-Nodes are similar if they are empty and have the same control, the same place and the same links.
+Nodes are similar if they are empty and have the same control, the same place, the same links and the same mark.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 from typing import Final
 
 from bigraphs.bigraph import Bigraph, children, moved, sites_in
-from bigraphs.node_labels import node_labels
+from bigraphs.node_labels import natural, node_labels
 
 CROWD: Final = 30
 """Up to this number of nodes, each node has its own box."""
@@ -35,8 +35,12 @@ def unfolded(bigraph: Bigraph) -> Folded:
     return Folded(bigraph, tuple(lines), {})
 
 
-def folded(bigraph: Bigraph, apart: Collection[str] = frozenset()) -> Folded:
+def folded(
+    bigraph: Bigraph, apart: Collection[str] = frozenset(), marked: Collection[str] = frozenset()
+) -> Folded:
     """Return the bigraph; above 30 nodes, fold similar ones, except the nodes named in `apart`.
+
+    The `marked` nodes are folded among themselves.
 
     >>> from bigraphs.relational_bigraphs import from_relations
     >>> world = from_relations({f"uav{n}": "UAV" for n in range(31)}, {}, {"wifi": ["uav7"]})
@@ -46,7 +50,7 @@ def folded(bigraph: Bigraph, apart: Collection[str] = frozenset()) -> Folded:
     whole = unfolded(bigraph)
     if len(bigraph.nodes) <= CROWD:
         return whole
-    groups = [group for group in _alike(bigraph, apart) if len(group) >= FEWEST]
+    groups = [group for group in _alike(bigraph, apart, marked) if len(group) >= FEWEST]
     gone = {number for group in groups for number in group[1:]}
     kept = [number for number in range(len(bigraph.nodes)) if number not in gone]
     rank = {number: place for place, number in enumerate(kept)}
@@ -55,9 +59,7 @@ def folded(bigraph: Bigraph, apart: Collection[str] = frozenset()) -> Folded:
     )
     sites = tuple(tuple(rank.get(parent, parent) for parent in parents) for parents in bigraph.sites)
     members = {
-        rank[group[0]]: tuple(
-            sorted((whole.lines[number][0] for number in group), key=lambda label: (len(label), label))
-        )
+        rank[group[0]]: tuple(sorted((whole.lines[number][0] for number in group), key=natural))
         for group in groups
     }
     lines = tuple(
@@ -67,12 +69,13 @@ def folded(bigraph: Bigraph, apart: Collection[str] = frozenset()) -> Folded:
     return Folded(replace(bigraph, nodes=nodes, sites=sites), lines, members)
 
 
-def _alike(bigraph: Bigraph, apart: Collection[str]) -> list[list[int]]:
+def _alike(bigraph: Bigraph, apart: Collection[str], marked: Collection[str]) -> list[list[int]]:
     inside, sited = children(bigraph), sites_in(bigraph)
     groups: dict[object, list[int]] = {}
     for number, node in enumerate(bigraph.nodes):
         alone = inside[number] or number in sited or len(node.parents) != 1 or node.name in apart
-        key = number if alone else (node.control, node.parents, node.ports, node.name is None)
+        named = node.name is None, node.name in marked
+        key = number if alone else (node.control, node.parents, node.ports, *named)
         groups.setdefault(key, []).append(number)
     return list(groups.values())
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections import Counter
 
 from bigraphs.bigraph import Bigraph, Link
@@ -24,6 +25,16 @@ def node_labels(bigraph: Bigraph) -> tuple[str, ...]:
             label += "'"
         found.append(label)
     return tuple(found)
+
+
+def natural(label: str) -> tuple[tuple[bool, int, str], ...]:
+    """Return the key of the natural order, in which numbers count as such.
+
+    >>> sorted(["uav10", "uav2", "boat"], key=natural)
+    ['boat', 'uav2', 'uav10']
+    """
+    parts = re.findall(r"[0-9]+|[^0-9]+", label)
+    return tuple((not part.isdigit(), int(part) if part.isdigit() else 0, part) for part in parts)
 
 
 def link_label(link: Link) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from bigraphs.bigraph import Bigraph, Place, children, points, sites_in
-from bigraphs.node_labels import link_label, node_labels
+from bigraphs.node_labels import link_label, natural, node_labels
 
 
 def draw_text(bigraph: Bigraph) -> str:
@@ -37,8 +37,9 @@ def _places(bigraph: Bigraph) -> Iterator[str]:
         for site in sited.get(place, ()):
             last = not inside[place] and site == sited[place][-1]
             yield f"{indent}{'└─' if last else '├─'} ${site}"
-        for child in reversed(inside[place]):
-            last = child == inside[place][-1]
+        within = sorted(inside[place], key=lambda number: natural(labels[number]))
+        for child in reversed(within):
+            last = child == within[-1]
             waiting.append((child, indent + ("└─ " if last else "├─ "), indent + ("   " if last else "│  ")))
 
 
@@ -55,5 +56,5 @@ def _links(bigraph: Bigraph) -> Iterator[str]:
     for name, link in bigraph.inner_links:
         inner.setdefault(link, []).append(f"{name} (inner)")
     for link, on in points(bigraph).items():
-        ends = [labels[number] for number, _ in on] + inner.get(link, [])
+        ends = sorted((labels[number] for number, _ in on), key=natural) + inner.get(link, [])
         yield f"{link_label(link)} ─ {', '.join(ends) or '(idle)'}"

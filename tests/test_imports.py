@@ -87,6 +87,7 @@ LIBRARIES = {
         "checker/",
         "bigactors/commands/big/states_file.py",
         "bigactors/commands/big/temporal.py",
+        "adapters/console/closest_approach.py",  # all pairs of vehicles and targets at once
         "adapters/camera/",
         "adapters/ros/position_messages.py",  # arrays of ROS's messages
         "adapters/simulated/camera.py",

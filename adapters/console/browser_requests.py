@@ -59,10 +59,10 @@ class Say(Struct, frozen=True):
 
 
 class Order(Struct, frozen=True):
-    """Order a vehicle, or all, to hold or to return."""
+    """Order a vehicle, several, or all, to hold or to return."""
 
     order: Literal["hold", "return"]
-    vehicle: Text | None
+    vehicle: Text | Annotated[tuple[Text, ...], Meta(min_length=1)] | None
 
 
 class GiveBackRequest(Struct, frozen=True):
@@ -77,6 +77,12 @@ class Acknowledge(Struct, frozen=True):
     alert: Annotated[str, Meta(pattern=r"\A[0-9]{1,9}\Z")]
 
 
+class Note(Struct, frozen=True):
+    """Record a note."""
+
+    text: Text
+
+
 class RequestedAction(Struct, frozen=True, forbid_unknown_fields=True):
     """One action: start the run that waits for its operator, or another."""
 
@@ -84,12 +90,13 @@ class RequestedAction(Struct, frozen=True, forbid_unknown_fields=True):
     order: Order | UnsetType = UNSET
     give_back: GiveBackRequest | UnsetType = UNSET
     acknowledge: Acknowledge | UnsetType = UNSET
+    note: Note | UnsetType = UNSET
     start: bool | UnsetType = UNSET
 
     def __post_init__(self) -> None:
         if sum(each is not UNSET for each in astuple(self)) != 1 or self.start is False:
             raise ValueError(
-                "expected one of 'say', 'order', 'give_back', 'acknowledge' and 'start' with true"
+                "expected one of 'say', 'order', 'give_back', 'acknowledge', 'note' and 'start' with true"
             )
 
 

@@ -22,7 +22,10 @@ from adapters.console.access import Role, bearer
 from adapters.console.browser_requests import MOST_BYTES, PROTOCOL, Hello, Unreadable, read_request
 from adapters.console.browser_session import EVERY, STALLED, Console, Looker
 from adapters.console.coast import coast, window_of
+from adapters.console.facts import Facts
+from adapters.console.flight_report import flight_report
 from adapters.recording.mcap_files import RecordingError
+from adapters.recording.recorded_tracks import WRITERS, recorded_tracks
 from adapters.web import BACKLOG, Door, is_meant, library, quiet_log
 from physical import is_word, open_file
 
@@ -54,6 +57,14 @@ AT_ONCE: Final = struct.pack("ii", 1, 0)
 
 LINGERING: Final = 1.0
 """Seconds after an answer for which unread request data is still received."""
+
+EXPORTS: Final = {
+    "track.gpx": "application/gpx+xml",
+    "track.csv": "text/csv",
+    "track.geojson": "application/geo+json",
+    "report.html": "text/html",
+}
+"""The content type of each file that a console writes."""
 
 POLICY: Final = (
     "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data: blob:; connect-src 'self'; "
@@ -104,6 +115,7 @@ async def serving(console: Console, site: Site) -> AsyncIterator[int]:
     application.router.add_get("/parts/{path:.*}", service.part)
     application.router.add_get("/land", service.land)
     application.router.add_get("/tiles", service.tiles)
+    application.router.add_get("/export/{name}", service.export)
     application.router.add_get("/ws", service.socket)
     bounds = {"keepalive_timeout": IDLE, "lingering_time": LINGERING}
     runner = web.AppRunner(application, access_log=None, logger=quiet_log(), shutdown_timeout=1.0, **bounds)
@@ -220,6 +232,16 @@ class Service:
         answer.enable_compression()
         return answer
 
+    async def export(self, request: Any) -> Any:
+        """Answer with the vehicles' tracks, or with the report of the flight."""
+        web = library().web
+        self._admit(request)
+        name, facts = request.match_info["name"], self._console.history.facts
+        if facts.run is None or name not in EXPORTS:
+            raise web.HTTPNotFound
+        text = await asyncio.to_thread(_exported, self._console.history.path, facts, Path(name).suffix)
+        return web.Response(text=text, content_type=EXPORTS[name], charset="utf-8")
+
     async def tiles(self, request: Any) -> Any:
         """Answer with a byte range of the map's tiles; the whole file may be too large for one answer."""
         web = library().web
@@ -296,6 +318,12 @@ class Service:
         for each in ended:
             if isinstance(each, Exception) and not isinstance(each, ConnectionError | TimeoutError):
                 raise each
+
+
+def _exported(recording: Path, facts: Facts, suffix: str) -> str:
+    assert facts.run is not None
+    tracks = recorded_tracks(recording, facts.run.vehicles)
+    return flight_report(facts, tracks) if suffix == ".html" else WRITERS[suffix](tracks)
 
 
 def _bytes_of(path: Path) -> bytes:

@@ -13,10 +13,13 @@ from adapters.console.console_view import Json
 from adapters.console.facts import OrderState
 from adapters.console.mutable_facts import MOST_VEHICLES, Draft
 from adapters.console.operator_actions import MOST_NAMED, act
-from adapters.console.parsing import text
+from adapters.console.parsing import text, texts
 from adapters.live.command_planning import stopping
 from adapters.live.overrides import Fate, StandingOrder
 from semantics.live_policy import Fallback
+
+MOST_LISTED: Final = 4
+"""The most vehicles whose names stand for the addressees of an order."""
 
 WORST_FIRST: Final = (Fate.REFUSED, Fate.ASKED, Fate.SENT, Fate.CONFIRMED)
 
@@ -29,7 +32,7 @@ def take_order(draft: Draft, time: float, data: Any) -> None:
             name, by = data.get("vehicle"), text(data.get("by"))
             for vehicle, _ in named:
                 end(draft, time, vehicle, f"then it was ordered to {order}")
-            number = act(draft, time, data, order, text(name) if isinstance(name, str) else "all", "asked")
+            number = act(draft, time, data, order, _told(name), "asked")
             for vehicle, request in named:
                 draft.taken.pop(vehicle, None)  # the order overrules the take-over
                 draft.standing_orders[vehicle] = OrderState(
@@ -37,6 +40,14 @@ def take_order(draft: Draft, time: float, data: Any) -> None:
                 )
                 _note(draft, time, vehicle, draft.standing_orders[vehicle])
             draft.standing_orders.bounded(MOST_VEHICLES)
+
+
+def _told(vehicle: Any) -> str:
+    """Return the addressees of an order: a vehicle, a few, the number of several, or all."""
+    several = texts(vehicle, MOST_NAMED)
+    if len(several) > MOST_LISTED:
+        return f"{len(several)} vehicles"
+    return ", ".join(several) if several else text(vehicle) or "all"
 
 
 def sent(draft: Draft, time: float, vehicle: str, request: str) -> None:

@@ -13,7 +13,7 @@ from adapters.console.fates import take_order
 from adapters.console.flights import take_command, take_flight, take_report, take_status, take_words
 from adapters.console.giving_back import take_giving_back
 from adapters.console.mutable_facts import Draft
-from adapters.console.operator_actions import take_acknowledgement, take_saying
+from adapters.console.operator_actions import take_acknowledgement, take_note, take_saying
 from adapters.console.parsing import text
 from adapters.console.preflight_checklist import take_preflight
 from adapters.console.replayed_steps import take_step
@@ -39,6 +39,7 @@ TOPICS: Final[dict[str, Callable[[Draft, float, Any], None]]] = {
     "orders": take_order,
     "findings": take_finding,
     "acknowledged": take_acknowledgement,
+    "notes": take_note,
     "status": take_status,
     "said": take_words,
     "stations": take_presence,

@@ -70,6 +70,7 @@ class History:
     """The content of a recording, from its beginning to its current end.
 
     Attributes:
+        path: The recording.
         facts: The facts up to the newest message that was read.
         opening: Returns the rules of the mission that was flown.
         behind: Whether the last reading left messages unread.
@@ -81,6 +82,7 @@ class History:
     ) -> None:
         """Begin with nothing read; `live`: time goes on even without new messages."""
         self.facts = Facts()
+        self.path = path
         self._reader = McapReader(path, unread=(OTHERS,))
         self.opening = opening
         self._drawing: Drawing = Undrawn() if drawing is None else drawing

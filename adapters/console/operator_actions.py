@@ -46,8 +46,8 @@ def act(draft: Draft, time: float, data: Any, what: str, about: str, state: str 
         "answered": time if state in SETTLED else None,
     }
     draft.actions.bounded(MOST)
-    if state != "confirmed" or what == "give back":
-        tick(draft, time, "action")
+    if sort := "note" if what == "note" else "action" if state != "confirmed" or what == "give back" else "":
+        tick(draft, time, sort)
     return str(draft.acted)
 
 
@@ -74,3 +74,13 @@ def take_acknowledgement(draft: Draft, time: float, data: Any) -> None:
             alert = draft.alerts[str(number)]
             draft.alerts[str(number)] = {**alert, "acknowledged": seen}
             act(draft, time, data, "acknowledge", alert["about"])
+
+
+# --- notes --------------------------------------------------------------------------------------------
+
+
+def take_note(draft: Draft, time: float, data: Any) -> None:
+    """Take in an operator's note."""
+    match data:
+        case {"text": str(said)}:
+            act(draft, time, data, "note", text(said))

@@ -6,7 +6,7 @@ from typing import Any, Final
 
 from adapters.console.console_view import Json
 from adapters.console.mutable_facts import Draft
-from adapters.console.parsing import text
+from adapters.console.parsing import text, texts
 
 STATES: Final = ("waits", "ready", "begun")
 MOST: Final = 1_000
@@ -22,8 +22,11 @@ def take_preflight(draft: Draft, _time: float, data: Any) -> None:
 
 
 def _item(said: dict[Any, Any]) -> Json:
+    vehicle = text(said.get("vehicle"))
+    ready = {"fence": text(said.get("fence")) or None, "refuses": texts(said.get("refuses"))}
     return {
         "what": text(said.get("what")),
         "done": said.get("done") is True,
         "detail": text(said.get("detail")),
+        **({"vehicle": vehicle, **ready} if vehicle else {}),
     }

@@ -5,8 +5,17 @@ from __future__ import annotations
 from collections.abc import Awaitable, Callable
 from pathlib import Path
 
-from adapters.console.browser_requests import Acknowledge, GiveBackRequest, Order, RequestedAction, Say
-from adapters.live.operator_socket import NobodyListens, Outcome, acknowledge, give_back, order, say, start
+from adapters.console.browser_requests import Acknowledge, GiveBackRequest, Note, Order, RequestedAction, Say
+from adapters.live.operator_socket import (
+    NobodyListens,
+    Outcome,
+    acknowledge,
+    give_back,
+    note,
+    order,
+    say,
+    start,
+)
 
 Performing = Callable[[RequestedAction, str], Awaitable[Outcome]]
 """Performs an action for a named operator, and returns its outcome."""
@@ -34,4 +43,6 @@ async def _perform(socket: Path, action: RequestedAction, by: str) -> Outcome:
             return await give_back(socket, vehicle, by=by)
         case RequestedAction(acknowledge=Acknowledge(alert)):
             return Outcome(await acknowledge(socket, int(alert), by))
+        case RequestedAction(note=Note(text)):
+            return Outcome(await note(socket, text, by))
     return Outcome(await start(socket, by))

@@ -7,6 +7,7 @@ from functools import lru_cache
 from adapters.console.agent_states import agents, sayings
 from adapters.console.alerts import alarms, fallen_back
 from adapters.console.cards import vehicles
+from adapters.console.closest_approach import approaches
 from adapters.console.console_view import Json, Section, View, keeping
 from adapters.console.entity_tracks import tracks
 from adapters.console.facts import Facts
@@ -34,6 +35,7 @@ def view_of(facts: Facts, now: float, head: Facts, picture: Section, before: Vie
         "fences": facts.run.fences,
         "entities": entities(facts, now, shown),
         "vehicles": cards,
+        "approaches": approaches(facts, now),
         "tracks": tracks(facts),
         "ways": ways(facts),
         "invariants": facts.invariants,

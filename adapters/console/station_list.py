@@ -18,10 +18,11 @@ def take_presence(draft: Draft, _time: float, data: Any) -> None:
     """Take in whether another station of the run is reached."""
     station = text(data.get("station"))
     if draft.run is not None and station in draft.run.stations:
-        reached = data.get("reached")
+        reached, agrees = data.get("reached"), data.get("agrees")
         draft.stations[station] = {
             "reached": reached if isinstance(reached, bool) else None,
             "heard": number(data.get("heard")),
+            "agrees": agrees if isinstance(agrees, bool) else None,
         }
 
 
@@ -39,7 +40,7 @@ def stations(facts: Facts, cards: Mapping[str, Json]) -> dict[str, Json]:
     """Return the section `stations`; empty if one station flies alone."""
     if facts.run is None:
         return {}
-    unknown = {"reached": None, "heard": None}
+    unknown = {"reached": None, "heard": None, "agrees": None}
     return {
         name: {
             "here": name == facts.run.station,

@@ -60,20 +60,21 @@ class Ordering:
 
     Attributes:
         fallback: The ordered action.
-        vehicle: The vehicle's name; None for all that this station commands.
+        vehicle: The vehicle's name, or several names; None for all that this station commands.
         by: The operator.
         number: Identifies the order in the answer.
     """
 
     fallback: Fallback
-    vehicle: Name | None = None
+    vehicle: Name | tuple[Name, ...] | None = None
     by: str = ""
     number: int = 0
 
     @property
     def texts(self) -> tuple[str, ...]:
         """The texts from outside."""
-        return self.vehicle or "", self.by
+        named = self.vehicle if isinstance(self.vehicle, tuple) else (self.vehicle or "",)
+        return *named, self.by
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,7 +91,21 @@ class Acknowledging:
         return (self.by,)
 
 
-Said = Saying | GivingBack | Ordering | Acknowledging
+@dataclass(frozen=True, slots=True)
+class Noting:
+    """An operator's note, which is recorded and changes nothing."""
+
+    text: str
+    by: str = ""
+    number: int = 0
+
+    @property
+    def texts(self) -> tuple[str, ...]:
+        """The texts from outside."""
+        return self.text, self.by
+
+
+Said = Saying | GivingBack | Ordering | Acknowledging | Noting
 """A message to a run from outside."""
 
 

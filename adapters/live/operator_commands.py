@@ -10,7 +10,7 @@ import re
 from collections.abc import Iterable, Iterator
 from ipaddress import ip_address
 
-from adapters.live.batch import Acknowledging, GivingBack, Ordering, Said, Saying
+from adapters.live.batch import Acknowledging, GivingBack, Noting, Ordering, Said, Saying
 from adapters.live.command_planning import is_authority, stopping
 from adapters.live.fallbacks import answers_for, due_fallback, fall_back
 from adapters.live.flying import ask_anew
@@ -45,14 +45,17 @@ def answer(turning: Turning, said: Said) -> None:
             count = turning.before.reported.count
             refusal = "" if 0 < number <= count else f"there is no finding {number}; there are {count}"
             turning.answer(Answer(said, refusal))
+        case Noting(text):
+            turning.answer(Answer(said, "" if text.strip() else "the note is empty"))
 
 
 # --- orders
 
 
 def order(turning: Turning, said: Ordering) -> Answer:
-    """Order a vehicle, or all, to hold or to return: from now on the mission does not command it."""
-    named = sorted(turning.plan.vehicles) if said.vehicle is None else [said.vehicle]
+    """Order a vehicle, several, or all, to hold or to return: from now on the mission does not command them."""
+    one = said.vehicle if isinstance(said.vehicle, str) else None
+    named = [one] if one else sorted(turning.plan.vehicles if said.vehicle is None else said.vehicle)
     left_out = {entity: why for entity in named if (why := _objection(turning, entity, said))}
     ordered = [entity for entity in named if entity not in left_out]
     if not ordered:
@@ -61,9 +64,9 @@ def order(turning: Turning, said: Ordering) -> Answer:
     requests = {entity: _order_one(turning, entity, said) for entity in ordered}
     who, are = ", ".join(ordered), "is" if len(ordered) == 1 else "are"
     message = f"{who} {are} ordered to {said.fallback.value} by {operator(said.by)}"
-    back = f"until `bigactors give-back {said.vehicle or 'VEHICLE'}`"
+    back = f"until `bigactors give-back {one or 'VEHICLE'}`"
     rest = "; ".join([*notes, *left_out.values(), f"the mission does not command {_it(ordered)} {back}"])
-    turning.find("ordered", said.vehicle or "", f"{message}; {rest}")
+    turning.find("ordered", one or "", f"{message}; {rest}")
     return Answer(said, "", requests, left_out, notes)
 
 
@@ -74,8 +77,8 @@ def _it(ordered: list[Name]) -> str:
 def _objection(turning: Turning, entity: Name, said: Ordering) -> str:
     """Return the reason why a vehicle does not get an order, or an empty text.
 
-    An order to all overrules no pilot and no fail-safe; an order to one overrules only a take-over from an
-    earlier turn, which the operator can know.
+    An order to all or to several overrules no pilot and no fail-safe; an order to one overrules only a take-over from
+    an earlier turn, which the operator can know.
     """
     if entity not in turning.plan.vehicles:
         return _no_vehicle(turning, entity)
@@ -84,8 +87,9 @@ def _objection(turning: Turning, entity: Name, said: Ordering) -> str:
     if not turning.overrides.is_foreign(entity):
         return ""
     why = turning.overrides.taken[entity]
-    if said.vehicle is None:
-        return f"{entity} was taken over, and an order to all does not overrule that: {why}"
+    if not isinstance(said.vehicle, str):
+        told = "all" if said.vehicle is None else "several"
+        return f"{entity} was taken over, and an order to {told} does not overrule that: {why}"
     if turning.before.overrides.taken.get(entity) != why:
         return f"{entity} was taken over just now: {why}; order it again to overrule that"
     return ""

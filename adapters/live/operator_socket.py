@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import asyncio
 import json
-from collections.abc import AsyncIterator, Awaitable, Callable, Iterator, Mapping
+from collections.abc import AsyncIterator, Awaitable, Callable, Iterator, Mapping, Sequence
 from contextlib import asynccontextmanager, contextmanager, suppress
 from pathlib import Path
 from socket import socket
 from types import MappingProxyType
 from typing import Any, Final, NamedTuple
 
-from adapters.live.batch import Acknowledging, GivingBack, Ordering, Said, Saying
+from adapters.live.batch import Acknowledging, GivingBack, Noting, Ordering, Said, Saying
 from adapters.live.socket_file import Reserve, bound
 from adapters.live.turn_result import Answer
 from physical import PhysicalError, is_text, is_word, read_json
@@ -32,8 +32,8 @@ ASKED_FATES: Final = b'{"fates": true}\n'
 HAS_STARTED: Final = "the run has started already"
 
 EXPECTED: Final = (
-    "an object with 'agent' and 'message', 'give_back', 'order' (hold or return) and 'vehicle', 'acknowledge', or "
-    "'start', and 'by', in valid Unicode"
+    "an object with 'agent' and 'message', 'give_back', 'order' (hold or return) and 'vehicle', 'acknowledge', 'note', "
+    "or 'start', and 'by', in valid Unicode"
 )
 
 Listener = Callable[[Said], Awaitable[Answer]]
@@ -162,8 +162,14 @@ def _said_by(said: Mapping[object, object], by: str) -> Said | None:
             return Ordering(Fallback(order), None, by)
         case {"order": "hold" | "return" as order, "vehicle": str(vehicle)} if is_text(vehicle):
             return Ordering(Fallback(order), vehicle, by)
+        case {"order": "hold" | "return" as order, "vehicle": [str(), *_] as several} if all(
+            map(is_text, several)
+        ):
+            return Ordering(Fallback(order), tuple(dict.fromkeys(filter(is_text, several))), by)
         case {"acknowledge": int(number)} if not isinstance(number, bool):
             return Acknowledging(number, by)
+        case {"note": str(text)} if is_text(text):
+            return Noting(text, by)
     return None
 
 
@@ -190,8 +196,8 @@ class Outcome(NamedTuple):
     notes: tuple[str, ...] = ()
 
 
-async def order(path: Path, what: str, vehicle: str | None, by: str = "") -> Outcome:
-    """Order a vehicle, or all, to `hold` or `return`; as `say`, and return the vehicles left out, too."""
+async def order(path: Path, what: str, vehicle: str | Sequence[str] | None, by: str = "") -> Outcome:
+    """Order a vehicle, several, or all, to `hold` or `return`; as `say`, and return the vehicles left out, too."""
     return _outcome(await _say(path, {"order": what, "vehicle": vehicle, "by": by}))
 
 
@@ -203,6 +209,11 @@ async def give_back(path: Path, vehicle: str, at: str = "", by: str = "") -> Out
 async def acknowledge(path: Path, finding: int, by: str = "") -> str:
     """Acknowledge a finding by its number; as `say`."""
     return _refusal(await _say(path, {"acknowledge": finding, "by": by}))
+
+
+async def note(path: Path, text: str, by: str = "") -> str:
+    """Record an operator's note in the run that listens at a path; as `say`."""
+    return _refusal(await _say(path, {"note": text, "by": by}))
 
 
 async def start(path: Path, by: str = "") -> str:

@@ -18,6 +18,7 @@ from adapters.mavlink.inventory import overheard
 from adapters.mavlink.keys import Keeper
 from adapters.mavlink.message import MavlinkMessage, say
 from adapters.mavlink.objections import impassable, remarks, unfit
+from adapters.mavlink.onboard_fences import fence_on_board
 from adapters.mavlink.pilot import Outcome, Pilot
 from adapters.mavlink.roster import Roster
 from adapters.mavlink.signing import Verdict
@@ -29,6 +30,7 @@ from adapters.plugin import (
     Failed,
     GoTo,
     LinkLost,
+    Readiness,
     Rebind,
     Refused,
     Report,
@@ -165,6 +167,14 @@ class Autopilot:
         """Yield messages to the operator about the vehicles before take-off."""
         for pilot in self._pilots.values():
             yield from remarks(pilot.craft, pilot.known, pilot.on_board, pilot.survey.given_up)
+
+    def readiness(self, entity: str) -> Readiness:
+        """Return a vehicle's fence as read back, and its recent reasons why it cannot be armed."""
+        pilot = self._pilots[entity]
+        found = fence_on_board(pilot.craft.fence, pilot.on_board)
+        return Readiness(
+            found, pilot.known.unready(self._listening.look(self._world.now()) if self._world else 0.0)
+        )
 
     async def command(self, command: Command) -> None:
         """Take on a command; raises Refused."""

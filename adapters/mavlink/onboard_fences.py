@@ -14,6 +14,7 @@ from adapters.mavlink.telemetry import Telemetry
 from adapters.mavlink.zones import Zone, zones
 from physical import Geometry, circle, contains, distance, point, share_interior
 from physical.corridor import corridor
+from physical.wordings import counted
 
 EACH_BY_ITSELF: Final = (4, 6)
 """The first ArduPilot version that can switch on one fence without the others."""
@@ -98,6 +99,20 @@ def keeps_no_polygon(known: Telemetry) -> str | None:
 
 def _no_polygon(name: str, value: float, remedy: str) -> str:
     return f"it keeps within no polygon: its {name} is {value:g}; {remedy}, or fly with --fence none"
+
+
+def fence_on_board(fence: Geometry | None, on_board: OnBoard) -> str:
+    """Return the zones that were read back from a vehicle, compared with the given polygon, in words."""
+    found = on_board.get(MissionType.FENCE)
+    if found is None:
+        return "not read back"
+    ours = {zone.key for zone in zones(() if fence is None else polygon_items(fence))}
+    keys = [zone.key for zone in zones(found)]
+    others = counted(sum(key not in ours for key in keys), "other zone")
+    if not ours:
+        return f"{counted(len(keys), 'zone')} on board, none given" if keys else "none"
+    given = "as given" if ours <= set(keys) else "not on board: it is sent before the first flight"
+    return given if ours >= set(keys) else f"{given}; {others} on board"
 
 
 def zones_beside(fence: Geometry | None, known: Telemetry, on_board: OnBoard) -> tuple[Zone, ...]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import fields
 from typing import Any
 
-from adapters.live.batch import Acknowledging, GivingBack, Heard, Ordering, Saying
+from adapters.live.batch import Acknowledging, GivingBack, Heard, Noting, Ordering, Saying
 from adapters.live.flown_ways import FlownWay
 from adapters.live.live_state import LiveState
 from adapters.live.operator_findings import Finding
@@ -87,7 +87,7 @@ def seen_json(seen: Seen) -> tuple[str, dict[str, Any]]:
 
 
 def answer_json(answer: Answer) -> tuple[str, dict[str, Any]] | None:
-    """Return the topic and the data of an operator's message, None for a refused acknowledgement."""
+    """Return the topic and the data of an operator's message, None for a refused acknowledgement or note."""
     said, refusal = answer.saying, {"refusal": answer.refusal}
     match said:
         case Saying(agent, message, by):
@@ -104,6 +104,8 @@ def answer_json(answer: Answer) -> tuple[str, dict[str, Any]] | None:
             return "orders", {"order": order.value, "vehicle": vehicle, "by": by, **told, **refusal}
         case Acknowledging(finding, by):
             return None if answer.refusal else ("acknowledged", {"finding": finding, "by": by})
+        case Noting(text, by):
+            return None if answer.refusal else ("notes", {"text": text, "by": by})
 
 
 def clocks_json(timers: Timers | None) -> dict[str, float]:

@@ -234,7 +234,8 @@ def _given_back(data: Json) -> Line:
 
 
 def _order(data: Json) -> Line:
-    return _spoken(data, data["vehicle"] or "all", f"ordered to {data['order']}")
+    told = data["vehicle"] or "all"
+    return _spoken(data, told if isinstance(told, str) else ", ".join(told), f"ordered to {data['order']}")
 
 
 def _spoken(data: Json, name: str, message: str) -> Line:

@@ -270,11 +270,15 @@ GIVEN_BACK: Final = _object(
 )
 
 ORDER: Final = _object(
-    "An operator ordered a vehicle, or all, to hold or to return. The commands have the same requests, and a report "
-    "`Accepted` or `Arrived` of such a request confirms it, `Rejected` says why not.",
+    "An operator ordered a vehicle, several, or all, to hold or to return. The commands have the same requests, and a "
+    "report `Accepted` or `Arrived` of such a request confirms it, `Rejected` says why not.",
     ("order", "vehicle", "by", "requests", "refusal"),
     order={"type": "string", "enum": ["hold", "return"]},
-    vehicle={**_OPTIONAL, "description": "Null for all."},
+    vehicle={
+        "type": ["string", "array", "null"],
+        "items": _TEXT,
+        "description": "A list for several, null for all.",
+    },
     by=_BY,
     requests={"type": "object", "description": "The request of each vehicle that got the order."},
     left_out={"type": "object", "description": "The reason for each vehicle that an order to all left out."},
@@ -288,6 +292,8 @@ ACKNOWLEDGED: Final = _object(
     finding={"type": "integer", "minimum": 1, "description": "Its number among the messages of `findings`."},
     by=_BY,
 )
+
+NOTE: Final = _object("An operator's note.", ("text", "by"), text=_TEXT, by=_BY)
 
 STATUS: Final = _object(
     "A vehicle's report on itself, at most once a second; null is not reported.",
@@ -326,7 +332,14 @@ PREFLIGHT: Final = _object(
         "items": {
             "type": "object",
             "required": ["what", "done", "detail"],
-            "properties": {"what": _TEXT, "done": {"type": "boolean"}, "detail": _TEXT},
+            "properties": {
+                "what": _TEXT,
+                "done": {"type": "boolean"},
+                "detail": _TEXT,
+                "vehicle": {**_TEXT, "description": "The vehicle that is checked."},
+                "fence": {**_TEXT, "description": "The fence that was read back from it, in words."},
+                "refuses": {**_TEXTS, "description": "Its recent reasons why it cannot be armed."},
+            },
         },
     },
     by={**_TEXT, "description": "Who has pressed Start."},
@@ -357,6 +370,7 @@ SCHEMAS: Final[dict[str, tuple[str, dict[str, Any]]]] = {
     "given_back": (f"bigactors.given_back/{VERSION}", GIVEN_BACK),
     "orders": (f"bigactors.order/{VERSION}", ORDER),
     "findings": (f"bigactors.finding/{VERSION}", FINDING),
+    "notes": (f"bigactors.note/{VERSION}", NOTE),
     "acknowledged": (f"bigactors.acknowledged/{VERSION}", ACKNOWLEDGED),
     "status": (f"bigactors.status/{VERSION}", STATUS),
     "said": (f"bigactors.status_text/{VERSION}", STATUS_TEXT),

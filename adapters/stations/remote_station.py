@@ -12,6 +12,9 @@ from adapters.stations.entries import Posted
 from adapters.stations.skew import Skew
 from adapters.stations.station_messages import StationMessage
 
+SETTLED: Final = 5.0
+"""Seconds for which two different digests of L must stay the same before the stations are said to differ."""
+
 SELDOM: Final = 2.0
 """Seconds between two reports of the time at which a station was last heard."""
 
@@ -30,6 +33,8 @@ class Other:
         reached: Whether it answers; None if that is not known yet.
         skewed: Whether its clock is off by more than the bound.
         met: Time of its last answer, by the run's clock; None before the first.
+        compared: Its digest of L and ours, and the time since which they have been these.
+        agrees: Whether its L is the same as ours; None while that is not known.
         shown: The last report of its presence to the run.
         awake: Set if it must be asked at once.
     """
@@ -43,17 +48,32 @@ class Other:
     reached: bool | None = None
     skewed: bool = False
     met: float | None = None
+    compared: tuple[str, str, float] = ("", "", 0.0)
+    agrees: bool | None = None
     shown: Presence | None = None
     awake: asyncio.Event = field(default_factory=asyncio.Event)
 
     def presence(self, station: str, now: float) -> Presence | None:
         """Return a report of its presence: at once if its reachability has changed, else seldom; None if not due."""
-        found, before = Presence(station, now, self.reached, self.met), self.shown
-        same = before is not None and before.reached == found.reached
+        agrees = self.agrees if self.reached else None
+        found, before = Presence(station, now, self.reached, self.met, agrees), self.shown
+        same = before is not None and (before.reached, before.agrees) == (found.reached, found.agrees)
         if same and before is not None and (before.heard == found.heard or now - before.time < SELDOM):
             return None
         self.shown = found
         return found
+
+    def compare(self, theirs: str, ours: str, now: float) -> bool:
+        """Compare the digests of L; return whether they differ from now on.
+
+        Changes take their time to the other station: two digests differ only if both have stayed so for a while.
+        """
+        if self.compared[:2] != (theirs, ours):
+            self.compared = (theirs, ours, now)
+        before, same = self.agrees, theirs == ours
+        if theirs and ours and (same or now - self.compared[2] >= SETTLED):
+            self.agrees = same
+        return self.agrees is False and before is not False
 
     def here(self, time: float) -> float:
         """Convert a time of its clock to the clock here, as far as its lead is known."""

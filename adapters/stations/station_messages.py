@@ -26,6 +26,7 @@ class StationMessage(Struct, frozen=True):
         upto: up to this one.
         last: The last number that it has used.
         entries: As plain data, or encoded.
+        logical: The digest of its L; empty before its first turn.
     """
 
     mission: str
@@ -34,6 +35,7 @@ class StationMessage(Struct, frozen=True):
     upto: Count
     last: Count
     entries: Annotated[Sequence[Any], Meta(max_length=2 * MOST_ENTRIES)]
+    logical: Annotated[str, Meta(max_length=64)] = ""
 
 
 class Question(Struct, frozen=True):

@@ -54,10 +54,11 @@ from adapters.stations.entries import (
     stamped,
 )
 from adapters.stations.journal import Journal
+from adapters.stations.logical_digest import logical_digest
 from adapters.stations.merge import ABREAST, MOST_ENTITIES, Merge, channels_of, on
 from adapters.stations.outgoing import believed, entered, moved, told
 from adapters.stations.peers import Peers
-from adapters.stations.remote_station import Other
+from adapters.stations.remote_station import SETTLED, Other
 from adapters.stations.shared_plugin import Shared
 from adapters.stations.skew import measured
 from adapters.stations.station_messages import (
@@ -71,6 +72,7 @@ from adapters.stations.station_messages import (
 from adapters.trouble_throttle import Troubles
 from adapters.typed_json import read_typed
 from physical import PhysicalError
+from semantics.state.logical_model import LogicalModel
 
 NAME: Final = "stations"
 """The plugin's name."""
@@ -140,6 +142,7 @@ class Sharing:
         self._world: World | None = None
         self._listening = Listening(0.0)
         self._introduced = False
+        self._logical: LogicalModel | None = None
         self._mute = False
 
     # --- as a plugin
@@ -187,6 +190,7 @@ class Sharing:
 
     def turned(self, turn: Turn, now: float) -> None:
         """Share a turn's entries for the others; the recording has the turn already."""
+        self._logical = turn.state.configuration.structure.logical
         for station, number in entered(turn).items():
             self.others[station].drop(number)
         contents: list[Content] = [*believed(turn, self.merge)]
@@ -287,8 +291,14 @@ class Sharing:
     def _message(self, entries: Sequence[Raw], upto: int, after: int) -> bytes:
         assert self._world is not None
         return encode(
-            StationMessage(self._digest, self._world.now(), after, upto, self._journal.last, entries)
+            StationMessage(
+                self._digest, self._world.now(), after, upto, self._journal.last, entries, self._digest_of_l()
+            )
         )
+
+    def _digest_of_l(self) -> str:
+        """Return the digest of our L; empty before the first turn."""
+        return "" if self._logical is None else logical_digest(self._logical)
 
     def _answer(self, _key: str, question: bytes) -> bytes:
         """Answer with the entries after a number."""
@@ -336,6 +346,9 @@ class Sharing:
         if message is None:
             return False
         self._found(world, station, other, message.time, asked)
+        if other.compare(message.logical, self._digest_of_l(), world.now()):
+            detail = f"it has believed otherwise for {SETTLED:g} s: compare the bigraphs of both consoles"
+            world.report(Trouble(NAME, world.now(), f"the L of {station} differs from ours", detail))
         return (
             other.follow(message, whole=self._take_all(station, message.entries)) and other.heard < other.last
         )

@@ -1,4 +1,4 @@
-"""`bigactors demo`: the missions of the README, checked and drawn."""
+"""`bigactors demo`: the missions of the README, checked and drawn; a verified one in flight with --console."""
 
 from argparse import Namespace
 from pathlib import Path
@@ -11,9 +11,10 @@ from bigactors.terminal import say
 
 DESCRIPTION: Final = """\
 Check the oil spill of the paper and the watch over a harbour, print their verdicts, and write their
-pictures and traces."""
+pictures and traces. With --console, check the watch over a spill, fly it with a simulated plane, and serve the
+operator's console: open the link that it prints."""
 
-EXAMPLES: Final = ("bigactors demo --out demo",)
+EXAMPLES: Final = ("bigactors demo --out demo", "bigactors demo --console")
 
 
 def add_arguments(parser: Parser) -> None:
@@ -25,16 +26,25 @@ def add_arguments(parser: Parser) -> None:
         default="demo",
         help="the folder for pictures and traces (default: demo)",
     )
+    parser.add_argument(
+        "--console",
+        action="store_true",
+        help="fly a mission with a simulated plane instead, ten times as fast as the clock, with the console",
+    )
 
 
 MISSIONS = ("oil_spill", "harbour_watch")
 
 
 def run(options: Namespace) -> Exit:
-    """Check both missions, and write a picture and the traces of each."""
+    """Check both missions, and write a picture and the traces of each; or fly one with the console."""
     from bigactors.files import make_folder
 
     out = make_folder(options.out)
+    if options.console:
+        from bigactors.live_demo import demonstrate
+
+        return Exit(demonstrate(out, console=True))
     return worst([_show(name, out) for name in MISSIONS])
 
 

@@ -155,8 +155,8 @@ def _draw_logical(page: Page, c: Configuration, top: float, look: Look) -> None:
 
 
 def draw_logical(bigraph: Bigraph, look: Look) -> Canvas:
-    """Draw L; every glowing or marked node has its own box."""
-    plan = layout(bigraph, look.glowing | look.marked)
+    """Draw L; every glowing node has its own box."""
+    plan = layout(bigraph, look.glowing, look.marked)
     return draw_layout(plan, highlight=look.glowing, marked=look.marked)
 
 

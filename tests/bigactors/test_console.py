@@ -50,7 +50,7 @@ live { on broken assumption: continue }
 SIMULATOR = """
 import sys
 from adapters.simulated import Kind, Simulator, Vehicle, run
-run(Simulator(sys.argv[1], [Vehicle(Kind.COPTER, (37.01, -8.65, 20.0))]).run(), float(sys.argv[2]))
+run(Simulator(sys.argv[1], [Vehicle(Kind.COPTER, (37.01, -8.65, 20.0), fault=sys.argv[3])]).run(), float(sys.argv[2]))
 """
 
 
@@ -60,7 +60,7 @@ def flown(tmp_path_factory):
     folder = tmp_path_factory.mktemp("flown")
     mission, recording = folder / "tour.mission", folder / "run.mcap"
     mission.write_text(MISSION)
-    with begun("-c", SIMULATOR, f"udpout:127.0.0.1:{(port := free_port(socket.SOCK_DGRAM))}", "20"):
+    with begun("-c", SIMULATOR, f"udpout:127.0.0.1:{(port := free_port(socket.SOCK_DGRAM))}", "20", ""):
         line = ["run", str(mission), "--unverified", f"--vehicle=uav0=udp:127.0.0.1:{port}", "--for=1"]
         assert main([*line, f"--record={recording}", f"--socket={folder / 's'}"]) == 3
     return recording
@@ -146,14 +146,14 @@ def test_with_a_certificate_it_is_served_by_https_also_before_there_is_a_recordi
 
 
 @contextmanager
-def flying(folder, *more, at_once=True):
-    """Fly the mission with a console; yield the process."""
+def flying(folder, *more, at_once=True, fault=""):
+    """Fly the mission with a console, the copter with a fault; yield the process."""
     more = (*more, "--at-once") if at_once else more
     (folder / "tour.mission").write_text(MISSION)
     port = free_port(socket.SOCK_DGRAM)
     line = ["-m", "bigactors", "run", folder / "tour.mission", f"--vehicle=uav0=udp:127.0.0.1:{port}"]
     line += ["--unverified", "--console", f"127.0.0.1:{free_port()}", "--socket", folder / "s", *more]
-    with begun("-c", SIMULATOR, f"udpout:127.0.0.1:{port}", "40"), begun(*line) as process:
+    with begun("-c", SIMULATOR, f"udpout:127.0.0.1:{port}", "40", fault), begun(*line) as process:
         yield process
 
 
@@ -200,7 +200,10 @@ def test_an_operator_acts_and_sees_what_becomes_of_it_and_the_run_outlives_its_c
         assert await ana.act(say={"agent": "op", "message": "status"}) == ""
         await ana.until(lambda state: [each["left"] for each in state["sayings"].values()] == [1])
         assert "permitted now" in await ana.act(say={"agent": "op", "message": "land"})
-        assert await ana.act(order={"order": "hold", "vehicle": "uav0"}) == ""
+        assert await ana.act(note={"text": "a boat crosses"}) == ""
+        await ana.until(lambda state: "confirmed" in fate(state, "note"))
+        assert await ana.act(note={"text": " "}) == "the note is empty"
+        assert await ana.act(order={"order": "hold", "vehicle": ["uav0"]}) == ""
         await ana.until(lambda state: "confirmed" in fate(state, "hold"))
         card = ana.state["vehicles"]["uav0"]
         assert "Ana" in card["taken"]
@@ -217,6 +220,7 @@ def test_an_operator_acts_and_sees_what_becomes_of_it_and_the_run_outlives_its_c
         told = read_recording(recording)
         assert [message.data["by"] for message in told.of("orders")] == ["Ana"]
         assert [message.data["by"] for message in told.of("given_back")] == ["Ana"]
+        assert [message.data for message in told.of("notes")] == [{"text": "a boat crosses", "by": "Ana"}]
         os.kill(console, signal.SIGKILL)
         assert any("the run goes on without it" in line for line in process.stdout)
         process.send_signal(signal.SIGINT)
@@ -228,7 +232,12 @@ def test_beside_a_console_nothing_is_commanded_before_somebody_presses_start(tmp
     async def does(ana):
         await ana.until(lambda state: state["preflight"].get("state") == "ready")
         assert all(each["done"] for each in ana.state["preflight"]["items"])
-        assert "uav0 is heard" in [each["what"] for each in ana.state["preflight"]["items"]]
+        (uav0,) = [each for each in ana.state["preflight"]["items"] if "vehicle" in each]
+        assert (uav0["what"], uav0["fence"]) == (
+            "uav0 is heard",
+            "not on board: it is sent before the first flight",
+        )
+        await ana.until(lambda state: "PreArm: no compass" in str(state["preflight"]["items"]))
         ready = ana.state["clock"]["now"]
         await ana.until(lambda state: state["clock"]["now"] > ready + 1.0)
         assert ana.state["vehicles"]["uav0"]["order"] is None
@@ -238,7 +247,7 @@ def test_beside_a_console_nothing_is_commanded_before_somebody_presses_start(tmp
         assert (ana.state["preflight"]["state"], ana.state["preflight"]["by"]) == ("begun", "Ana")
         assert await ana.act(start=True) == "the run has started already"
 
-    with flying(tmp_path, "--record", tmp_path / "run.mcap", at_once=False) as process:
+    with flying(tmp_path, "--record", tmp_path / "run.mcap", at_once=False, fault="no compass") as process:
         link = link_of(process)
         assert process.stdout.readline().startswith("console, to watch:")
         assert "press Start" in process.stdout.readline()

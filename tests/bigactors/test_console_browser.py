@@ -120,7 +120,7 @@ def stops_it_on_its_way_and_lets_it_go_on(page):
     hold(page, "[aria-label^='Hold uav0']")
     has(page, "[data-name=uav0] .ordered", "to hold, by Ana: confirmed by the vehicle")
     has(page, "[data-name=uav0]", "held by the operator (Ana)")
-    hold(page, "[aria-label^='Give uav0 back']")
+    hold(page, "[aria-label^='Give back uav0']")
     has(page, "[data-name=uav0] .fate", "give back by Ana")
     page.locator("[data-name=uav0]", has_not_text="Taken over").wait_for()
 
@@ -147,7 +147,7 @@ def says_handover_and_gives_it_back_after_a_fail_safe(page, folder):
     has(page, "[data-name=uav0]", "RTL")
     page.locator(".acknowledge").click()
     has(page, "[data-name=uav0]", "Taken over")
-    hold(page, "[aria-label^='Give uav0 back']")
+    hold(page, "[aria-label^='Give back uav0']")
     has(page, "[data-name=uav0] .fate", "give back by Ana")
 
 

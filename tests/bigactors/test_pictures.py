@@ -9,13 +9,14 @@ import pytest
 from drawn_missions import KINDS, PLACEMENTS, SIGNATURE, oil_spill, run
 
 from bigactors.cli import main
-from bigactors.pictures import draw_configuration, draw_overview, draw_trace
+from bigactors.pictures import Look, draw_configuration, draw_overview, draw_trace, logical_picture
 from bigactors.pictures.page import wrapped
 from bigactors.pictures.scene import changed_names, differing, is_place, map_entities, palette_of
 from bigactors.pictures.trace import AGENT, AROUND, SERVED, rows_of
 from bigraphs.drawing import LINKS
 from bigraphs.layout import layout
 from bigraphs.link_curves import route
+from bigraphs.relational_bigraphs import from_relations
 from checker.properties.race_steps import RaceSteps
 from checker.reports.lanes import lanes_of
 from physical import circle, point
@@ -97,6 +98,17 @@ def test_channels_have_the_colours_that_the_bigraph_gives_them():
 def test_each_kind_has_a_colour_believed_or_not():
     c = oil_spill(beliefs=Beliefs({"oilSpill0": None}))
     assert set(palette_of(c).kinds) == set(KINDS.values())
+
+
+def test_a_fleet_in_flight_is_one_box_beside_the_one_that_changed():
+    fleet = [f"uav{n}" for n in range(50)]
+    nodes = dict.fromkeys(fleet, "UAV") | {"searchArea0": "Location"}
+    believed = from_relations(nodes, dict.fromkeys(fleet, "searchArea0"), {})
+    look = Look(palette_of(oil_spill()), frozenset({"uav7"}), frozenset(fleet))
+    assert ("UAV ×49", "uav0, uav1, …") in layout(believed, look.glowing, look.marked).shown.lines
+    texts = texts_of(logical_picture(believed, look, "L"))
+    assert {"UAV ×49", "uav7"} <= set(texts)
+    assert "uav8" not in texts
 
 
 # --- configurations -------------------------------------------------------------------------------

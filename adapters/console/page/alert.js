@@ -58,7 +58,7 @@ export function Alert({ app }) {
   const broken = app.clock.get("broken_off") && app.clock.atEnd;
   const welcome = useWatched(app.link.welcome);
   const question = act ? asked(sayings, agents) : null;
-  return html`<div class="alerts">
+  return html`<section class="alerts" aria-label="Alerts">
     <div role="alert" class=${`alert ${newest ? "standing" : ""}`} key="line">
       ${newest && html`<span class="message" key=${number} title=${newest.message} onClick=${() => app.listing.set(!open)}><span class="cause">${past && html`<span class="now-mark">NOW</span> `}<b>${newest.about ? `${newest.about}: ` : ""}</b>${newest.message}</span>${newest.consequence && html` <span class="consequence"><i aria-hidden="true">→</i> ${newest.consequence}</span>`}</span>`}
     </div>
@@ -75,5 +75,5 @@ export function Alert({ app }) {
       ${alert.acknowledged && html` <span class="quiet">acknowledged by ${alert.acknowledged.by || "someone"} at ${utc(alert.acknowledged.time)}</span>`}
       ${act && alert.wrong && !alert.acknowledged && html` <button type="button" onClick=${() => app.act({ acknowledge: { alert: key } }, { what: "acknowledge", about: alert.about })}>Acknowledge</button>`}
     </li>`)}</ol>`}
-  </div>`;
+  </section>`;
 }

@@ -1,4 +1,5 @@
 /** The operator's console: one screen with the content of a recording and the actions of the operator. */
+import { Find } from "./find.js";
 import { first, html, render, memo, kept, owed, useEffect, useLayoutEffect, useRef, useSections, useWatched, Watched } from "./ui.js";
 import { Alert } from "./alert.js";
 import { Announcer } from "./announce.js";
@@ -11,8 +12,10 @@ import { Mission, NotConnected } from "./mission.js";
 import { NoticeList, Notices } from "./notices.js";
 import { OnReturn, Orders } from "./orders.js";
 import { Preflight } from "./preflight.js";
+import { Sound } from "./sound.js";
 import { Store } from "./store.js";
 import { openTab, Panel, PANELS, TabList, usePhone } from "./tabs.js";
+import { TargetFilter, Targets } from "./targets.js";
 import { neighbour, SPEEDS, Timeline } from "./timeline.js";
 import { Ways } from "./ways.js";
 import { Who } from "./operator_name.js";
@@ -30,7 +33,11 @@ class App {
   clock = new Clock(this.store);
   notices = new Notices(this.store);
   tell = this.notices.tell;
+  sound = new Sound(this.store);
+  targets = new Targets(this.store);
   chosen = new Watched(null);
+  /** The vehicles that are chosen for an order to several. */
+  several = new Watched(new Set());
   following = new Watched(false);
   measuring = new Watched(false);
   enlarged = new Watched(false);
@@ -229,17 +236,30 @@ class App {
     const at = names.indexOf(this.chosen.value);
     this.chosen.set(names[at < 0 ? (by > 0 ? 0 : names.length - 1) : (at + by + names.length) % names.length]);
   };
+  /** Choose a thing and bring it into view. */
+  find = (name) => {
+    if (this.chosen.value === name) this.map?.choose(name);
+    else this.chosen.set(name);
+    if (!this.store.section("vehicles").has(name) || this.tab.value !== "vehicles") this.showTab("map");
+  };
+  otherSound = () => this.sound.wanted.set(this.sound.wanted.value === "on" ? "off" : "on");
   focusCard = () => {
     this.showTab("vehicles");
-    requestAnimationFrame(() => document.querySelector(".card.chosen .name, .card .name")?.focus());
+    requestAnimationFrame(() => document.querySelector(".fleet:has(.card.chosen) .name, .card.chosen .name, .fleet .name, .card .name")?.focus());
   };
   focusMap = () => {
     this.showTab("map");
-    requestAnimationFrame(() => document.querySelector("#map .leaflet-container, #map")?.focus());
+    requestAnimationFrame(() => document.querySelector("#map .leaflet-container")?.focus());
+  };
+  focusFind = () => {
+    this.showTab("map");
+    const focus = () => document.getElementById("find")?.focus(); // at once if it is visible: the next key is the text's
+    focus();
+    requestAnimationFrame(focus);
   };
   showTab = (key) => this.tab.set(key);
   escape = () => {
-    const unfolded = [...document.querySelectorAll("details.verdict[open], details.map-legend[open]")];
+    const unfolded = [...document.querySelectorAll("details.verdict[open], details.map-legend[open], details.targets[open]")];
     if (this.help.value) this.help.set(false);
     else if (this.listing.value) this.listing.set(false);
     else if (unfolded.length > 0) unfolded.forEach((each) => (each.open = false));
@@ -255,12 +275,28 @@ class App {
     this.link.connect();
   }
 
+  /** Save a file: of the console, or the picture of the map. */
+  save = async (name) => {
+    try {
+      const content = name === "map.png" ? await this.map.picture() : await (await this.#fetch(`/export/${name}`)).blob();
+      const link = document.createElement("a");
+      link.href = URL.createObjectURL(content);
+      link.download = `${this.store.section("mission").get("name") ?? "flight"}-${name}`;
+      link.click();
+      setTimeout(() => URL.revokeObjectURL(link.href), 60_000);
+    } catch (problem) {
+      this.tell(`Not saved: ${problem.message}`);
+    }
+  };
+
   /** Get JSON from the program that serves this page, with the token. */
-  fetchJson = async (path) => {
+  fetchJson = async (path) => (await this.#fetch(path)).json();
+
+  async #fetch(path) {
     const answer = await fetch(path, { headers: { Authorization: `Bearer ${this.link.token}` } });
     if (!answer.ok) throw new Error(`${path}: ${answer.status}`);
-    return answer.json();
-  };
+    return answer;
+  }
 
   async openMap(element) {
     const { createMap } = await import("./map/map.js");
@@ -271,7 +307,8 @@ class App {
       tiles: tiles ? { url: "/tiles", headers: { Authorization: `Bearer ${this.link.token}` } } : null,
       followed: () => this.following.set(false),
       measured: (on) => this.measuring.set(on),
-      covers: () => document.querySelectorAll(".map-tools button, .subject"),
+      hidden: () => this.targets.hidden,
+      covers: () => document.querySelectorAll(".map-tools > *, .subject"),
     });
     this.map.setTheme(this.theme.value);
     this.map.choose(this.chosen.value);
@@ -305,7 +342,7 @@ function Screen({ app }) {
     <${NotConnected} app=${app} />
     <${Alert} app=${app} />
     <${Preflight} app=${app} key="preflight" />
-    ${phone && html`<${TabList} key="tabs" app=${app} phone=${true} />`}
+    ${phone && html`<nav key="tabs" aria-label="Tabs"><${TabList} app=${app} phone=${true} /></nav>`}
     <main key="main">
       <section class="map-area" id="area-map" aria-label="Map" key="map"><${MapElement} app=${app} /><${MapTools} app=${app} />${phone && html`<${Subject} app=${app} />`}</section>
       <aside key="side" id="area-vehicles">
@@ -351,9 +388,11 @@ function MapTools({ app }) {
   const following = useWatched(app.following);
   const measuring = useWatched(app.measuring);
   return html`<div class="map-tools" role="toolbar" aria-label="Map">
+    <${Find} app=${app} />
     <button type="button" title="fit  F" onClick=${() => app.map?.fit()}>Fit</button>
     <button type="button" title="follow the chosen  O" aria-pressed=${String(following)} disabled=${chosen === null && only === null && !following} onClick=${() => app.following.set(!following)}>Follow</button>
     <button type="button" title="measure  R" aria-pressed=${String(measuring)} onClick=${() => app.measuring.set(!measuring)}>Measure</button>
+    <${TargetFilter} app=${app} />
     ${chosen !== null && html`<button type="button" class="chosen-name" title="choose nothing  Esc" onClick=${() => app.chosen.set(null)}>${chosen} ×</button>`}
   </div>`;
 }

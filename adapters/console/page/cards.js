@@ -1,9 +1,9 @@
-/** One card for each vehicle, worst first. */
+/** The vehicles, worst first: a card each; from three on a table, a row each, in which the chosen one opens its card. */
 import { html, memo, byName, useEffect, useRef, useSections, useWatched } from "./ui.js";
 import { Age, Ticking, say } from "./clock.js";
 import { distance, distanceToArea } from "./map/geodesy.js";
-import { fallbackWords, fateOf, isAstray, orderedWords, orderWords, requestWords, wayOf, whereabouts } from "./wording.js";
-import { OnReturn, Orders } from "./orders.js";
+import { fallbackWords, fateOf, isAstray, moves, orderedWords, orderWords, requestWords, wayOf, whereabouts } from "./wording.js";
+import { OnReturn, Orders, Several } from "./orders.js";
 import { useStillness } from "./stable_list.js";
 import { angle, age, duration, metres, position, range, speed, system, utc } from "./units.js";
 
@@ -11,7 +11,8 @@ const MARKS = ["●", "▲", "■", "✖"];
 /** The word for a vehicle without any current information. */
 const UNKNOWN = "unknown";
 const UNKNOWN_MARK = "?";
-const MANY = 8;
+/** The number of vehicles from which each has a row. */
+const MANY = 3;
 /** Seconds for which a change of authority is marked, a finished action is shown, and a vehicle's text is not dimmed. */
 const NEW = 60;
 /** Seconds after which a vehicle's text disappears. */
@@ -32,10 +33,11 @@ export function Cards({ app }) {
   useEffect(() => () => (app.order = []), []);
 
   useEffect(() => {
-    if (chosen !== null) list.current?.querySelector(`[data-name="${CSS.escape(chosen)}"]`)?.scrollIntoView({ block: "nearest" });
+    if (chosen !== null) list.current?.querySelector(`[data-row="${CSS.escape(chosen)}"], [data-name="${CSS.escape(chosen)}"]`)?.scrollIntoView({ block: "nearest" });
   }, [chosen]);
 
-  const many = vehicles.size > MANY;
+  const many = vehicles.size >= MANY;
+  const several = useWatched(app.several);
   return html`<section class="cards" aria-labelledby="cards-title" id="cards">
     <h2 id="cards-title">Vehicles <span class="count">${vehicles.size}</span>
       ${tallied([...vehicles.values()], stale).map(([word, { level, count }]) => html`<span key=${word} class=${`tally level-${level}`}>${markOf(word, level)} ${count} ${word}</span>`)}
@@ -43,11 +45,35 @@ export function Cards({ app }) {
     <div class="scroll" ref=${list} ...${hand} tabindex="-1"><div class="stack">
       ${chosen !== null && !vehicles.has(chosen) && entities.has(chosen) && html`<${Entity} key="*chosen" app=${app} name=${chosen} entity=${entities.get(chosen)} />`}
       ${vehicles.size === 0 && html`<p class="none">No vehicle is known yet.</p>`}
-      ${app.order.map((name) => html`<${Card} key=${name} app=${app} name=${name} card=${vehicles.get(name)}
-        chosen=${name === chosen} stale=${stale} units=${system.value} small=${many && name !== chosen} />`)}
+      ${app.order.map((name) => html`<${many ? FleetRow : Card} key=${name} app=${app} name=${name} card=${vehicles.get(name)}
+        chosen=${name === chosen} several=${several.has(name)} stale=${stale} units=${system.value} />`)}
     </div></div>
+    ${many && html`<${Several} key="several" app=${app} names=${app.order.filter((name) => several.has(name))} all=${app.order} cards=${vehicles} />`}
   </section>`;
 }
+
+/** A vehicle's row, above its card if it is chosen. */
+const FleetRow = memo(({ app, name, card, chosen, several, stale }) => {
+  const word = wordOf(card, stale);
+  const pick = (event) => {
+    const next = new Set(app.several.value);
+    if (event.currentTarget.checked) next.add(name);
+    else next.delete(name);
+    app.several.set(next);
+  };
+  const place = whereabouts(card);
+  return html`<div class=${`fleet level-${card.level}`} data-row=${name}>
+    <div class="row">
+      <input type="checkbox" aria-label=${`choose ${name} for an order to several`} checked=${several} onChange=${pick} />
+      <button type="button" class="name" aria-expanded=${String(chosen)} onClick=${() => app.chosen.set(chosen ? null : name)}><span class="mark" aria-hidden="true">${markOf(word, card.level)}</span> ${name}</button>
+      <span class=${`level ${card.level || stale ? "" : "quiet"}`}>${word}</span>
+      <${LinkAge} app=${app} link=${card.link} unknown=${word === UNKNOWN} />
+      <span><${Battery} battery=${card.battery} /></span>
+      <span class="rest" title=${card.why || place}>${card.why ? html`<b>${card.why}</b>` : place}</span>
+    </div>
+    ${chosen && html`<${Card} app=${app} name=${name} card=${card} chosen=${true} stale=${stale} units=${system.value} />`}
+  </div>`;
+});
 
 const wordOf = ({ word }, stale) => (stale ? UNKNOWN : word);
 const markOf = (word, level) => (word === UNKNOWN ? UNKNOWN_MARK : MARKS[level]);
@@ -63,10 +89,10 @@ function tallied(cards, stale) {
   return [...found].sort(([, a], [, b]) => a.level - b.level);
 }
 
-const Card = memo(({ app, name, card, chosen, stale, small }) => {
+const Card = memo(({ app, name, card, chosen, stale }) => {
   const choose = () => app.chosen.set(chosen ? null : name);
   const word = wordOf(card, stale);
-  return html`<article class=${`card level-${card.level} ${small ? "small" : ""} ${chosen ? "chosen" : ""}`} data-name=${name} aria-label=${name}>
+  return html`<article class=${`card level-${card.level} ${chosen ? "chosen" : ""}`} data-name=${name} aria-label=${name}>
     <header>
       <h3>
         <span class="mark" aria-hidden="true">${markOf(word, card.level)}</span>
@@ -76,23 +102,23 @@ const Card = memo(({ app, name, card, chosen, stale, small }) => {
         <${LinkAge} app=${app} link=${card.link} unknown=${word === UNKNOWN} />
         <${Battery} battery=${card.battery} />
       </h3>
-      ${!small && html`<${Orders} app=${app} name=${name} card=${card} />`}
+      <${Orders} app=${app} name=${name} card=${card} />
     </header>
-    ${!small && html`<${OnReturn} app=${app} card=${card} />`}
+    <${OnReturn} app=${app} card=${card} />
     ${card.why && html`<p class="why">${card.why}</p>`}
-    ${small ? html`<p class="brief"><${Place} card=${card} /> ${card.request && html`<${Request} app=${app} card=${card} />`}</p>` : html`
     <dl>
       <dt>Place</dt><dd><${Place} card=${card} /></dd>
       <dt>Request</dt><dd>${card.request ? html`<${Request} app=${app} card=${card} />` : html`<span class="quiet">none</span>`}</dd>
-      ${card.flight && isCommanded(card) && html`<dt>Flight</dt><dd><${Flight} app=${app} flight=${card.flight} /></dd>`}
-      ${card.order && html`<dt>Order</dt><dd><${Order} app=${app} order=${card.order} returning=${card.returning} /></dd>`}
+      ${card.flight && isCommanded(card) && html`<dt>${moves(card.kind) === "flies" ? "Flight" : "Trip"}</dt><dd><${Flight} app=${app} flight=${card.flight} /></dd>`}
+      ${card.order && html`<dt>Order</dt><dd><${Order} app=${app} order=${card.order} returning=${card.returning} kind=${card.kind} /></dd>`}
       ${motion(app.store, name, card) && html`<dt>Motion</dt><dd><${Ticking} clock=${app.clock} apply=${(element) => say(element, motion(app.store, name, card))} /></dd>`}
       ${status(card) && html`<dt>Mode</dt><dd>${status(card)}</dd>`}
+      <${Approach} app=${app} name=${name} />
       ${card.authority?.length > 0 && html`<dt>Authority</dt><dd><${Authority} app=${app} card=${card} /></dd>`}
       ${card.said && app.clock.now - card.said.time < STALE && html`<dt>Said</dt><dd><${Said} app=${app} said=${card.said} /></dd>`}
       ${card.ordered ? html`<dt>Ordered</dt><dd><${Ordered} app=${app} ordered=${card.ordered} /></dd>` : card.taken && html`<dt>Taken over</dt><dd class="bad">${card.taken}</dd>`}
     </dl>
-    <${LastAction} app=${app} about=${name} ordered=${card.ordered} />`}
+    <${LastAction} app=${app} about=${name} ordered=${card.ordered} />
   </article>`;
 });
 
@@ -146,7 +172,7 @@ function Place({ card }) {
 }
 
 /** The age of a vehicle's last message, marked when it is old; its time of day once the run has stopped listening. */
-function LinkAge({ app, link, unknown }) {
+export function LinkAge({ app, link, unknown }) {
   if (unknown && link.heard !== null) return html`<span class="link bad">last heard ${utc(link.heard)}</span>`;
   if (link.lost) return html`<span class="link bad">link lost${link.heard !== null && html` <${Age} clock=${app.clock} time=${link.heard} />`}</span>`;
   if (link.heard === null) return html`<span class="link quiet">not heard</span>`;
@@ -157,7 +183,7 @@ function LinkAge({ app, link, unknown }) {
   return html`<${Ticking} clock=${app.clock} apply=${apply} class="link" />`;
 }
 
-function Battery({ battery }) {
+export function Battery({ battery }) {
   if (!battery || !isNumber(battery.percent)) return null;
   const low = battery.percent < 25;
   return html`<span class=${`battery ${low ? "bad" : ""}`} title=${isNumber(battery.volts) ? `battery, ${battery.volts.toFixed(1)} V` : "battery"}>
@@ -169,9 +195,9 @@ function Battery({ battery }) {
  * A request with its waiting time, its time limit and its fallback; the title has the mission's own words.
  * The fallback is omitted for a vehicle that the mission does not command now: it would not receive that order.
  */
-function Request({ app, card: { request, taken, returning } }) {
+function Request({ app, card: { request, taken, returning, kind } }) {
   const { since, limit, fallback, given_up: givenUp } = request;
-  if (givenUp) return html`<span class="request" title=${request.text}>given up: ${requestWords(request)}</span>`;
+  if (givenUp) return html`<span class="request" title=${request.text}>given up: ${requestWords(request, kind)}</span>`;
   const stood = (now) => Math.max(0, now - since);
   const then = limit && !taken && fallbackWords(fallback) ? `, ${fallbackWords(fallback)}` : "";
   const words = (element, now) => say(element, limit ? `${duration(stood(now))} of ${duration(limit)}${then}` : `for ${duration(stood(now))}`);
@@ -180,7 +206,7 @@ function Request({ app, card: { request, taken, returning } }) {
     element.style.setProperty("--part", Math.min(1, part).toFixed(3));
     element.className = `bar ${part > 1 ? "over" : part > 0.5 ? "half" : ""}`;
   };
-  return html`<span class="request" title=${request.text}><span>${taken || returning ? "not now: " : ""}${requestWords(request)}</span> <${Ticking} clock=${app.clock} apply=${words} class="stood" />
+  return html`<span class="request" title=${request.text}><span>${taken || returning ? "not now: " : ""}${requestWords(request, kind)}</span> <${Ticking} clock=${app.clock} apply=${words} class="stood" />
     ${limit ? html`<${Ticking} clock=${app.clock} apply=${bar} class="bar" aria-hidden="true" />` : null}</span>`;
 }
 
@@ -201,8 +227,8 @@ function Flight({ app, flight: { since, least, most } }) {
   return html`<${Ticking} clock=${app.clock} apply=${words} />`;
 }
 
-function Order({ app, order, returning }) {
-  return html`<span class=${order.state === "refused" ? "bad" : ""}>${orderWords(order, returning)} · <${Age} clock=${app.clock} time=${order.since} /> ago</span>`;
+function Order({ app, order, returning, kind }) {
+  return html`<span class=${order.state === "refused" ? "bad" : ""}>${orderWords(order, returning, kind)} · <${Age} clock=${app.clock} time=${order.since} /> ago</span>`;
 }
 
 /** An operator's order: asked, sent, confirmed or refused; only a confirmed one is done. */
@@ -218,6 +244,16 @@ function Authority({ app, card: { authority, handed } }) {
     element.className = isNew ? "changed" : "";
   });
   return html`${authority.join(", ")}${told && html`<${Ticking} clock=${app.clock} apply=${told} />`}`;
+}
+
+/** The closest approach (CPA) of a vehicle and a target, if both keep course and speed. */
+function Approach({ app, name }) {
+  const [approaches] = useSections(app.store, ["approaches"], 500);
+  const found = [...approaches.values()].filter(({ vehicle, target }) => name === vehicle || name === target).sort((a, b) => a.distance - b.distance)[0];
+  if (!found) return null;
+  const { vehicle, target, distance: least, range: far, at } = found;
+  const words = (element, now) => say(element, at > now ? ` in ${duration(at - now)}, now ${range(far)}` : " now: then they part");
+  return html`<dt title="closest point of approach, if both keep course and speed">CPA</dt><dd><button type="button" class="name plain" onClick=${() => app.find(name === vehicle ? target : vehicle)}>${name === vehicle ? target : vehicle}</button> ${range(least)}<${Ticking} clock=${app.clock} apply=${words} /></dd>`;
 }
 
 /** A vehicle's last text, dimmed when it is old. */
@@ -242,5 +278,5 @@ const Entity = memo(({ app, name, entity }) => html`<article class="card entity 
     <dl><dt>Place</dt><dd><${Place} card=${entity} /></dd>
       <dt>Position</dt><dd>${position(entity.at)}</dd>
       <dt>Motion</dt><dd>${isNumber(entity.course) ? `course ${angle(entity.course)}` : "course not reported"} · ${isNumber(entity.speed) ? speed(entity.speed) : "speed not reported"}</dd>
-      <dt>Seen</dt><dd><${Age} clock=${app.clock} time=${entity.seen} /> ago</dd></dl>
+      <dt>Seen</dt><dd><${Age} clock=${app.clock} time=${entity.seen} /> ago</dd><${Approach} app=${app} name=${name} /></dl>
   </article>`);

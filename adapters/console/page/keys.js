@@ -18,6 +18,7 @@ export function shortcuts(app) {
     ["b", "10 s back", () => app.back(10)],
     ["B", "1 min back", () => app.back(60)],
     ["g", "go to a time that is typed", () => document.getElementById("goto")?.focus()],
+    ["/", "find a vehicle, MMSI, place or event", () => app.focusFind()],
     ["j", "choose the next vehicle", () => app.chooseNext(1)],
     ["k", "choose the vehicle before", () => app.chooseNext(-1)],
     ["v", "to the chosen vehicle's card", () => app.focusCard()],
@@ -29,6 +30,7 @@ export function shortcuts(app) {
     ["r", "measure on the map", () => app.measuring.set(!app.measuring.value)],
     ["e", "enlarge the panel, or not", () => app.enlarged.set(!app.enlarged.value)],
     ["t", "light or dark", () => app.otherTheme()],
+    ["s", "sound of alarms, or not", () => app.otherSound()],
     ...app.tabs.map(([key, title], n) => [String(n + 1), title, () => app.showTab(key)]),
   ];
 }

@@ -9,6 +9,7 @@ export function Mission({ app }) {
   const [begin, live, ended] = ["begin", "live", "ended"].map((key) => clock.get(key) ?? null);
   const welcome = useWatched(app.link.welcome);
   const theme = useWatched(app.theme);
+  const sound = useWatched(app.sound.wanted);
   return html`<header class="top">
     <h1>${name ?? "bigactors"}</h1>
     ${name !== null && html`<${Verdict} verified=${verified} verdicts=${verdicts ?? []} doubted=${doubtedBy(alerts)} digest=${digest} scheduler=${scheduler} />`}
@@ -19,6 +20,7 @@ export function Mission({ app }) {
     ${clock.size > 0 && html`<span class="clock"><${State} app=${app} live=${live} ended=${app.clock.atEnd && ended} clock=${clock} />
       <${Ticking} clock=${app.clock} class="time" apply=${(element, now) => say(element, utc(now))} /><span class="zone">UTC</span>
       <${Ticking} clock=${app.clock} class="quiet" apply=${(element, now) => say(element, begin === null ? day(now) : `${since(now - begin)} · ${day(now)}`)} /></span>`}
+    <button type="button" class="icon" title="sound of alarms  S" aria-label="sound of alarms" aria-pressed=${String(sound === "on")} onClick=${app.otherSound}><svg class="sign" viewBox="0 0 16 16" aria-hidden="true"><path d="M8 2a4 4 0 0 0-4 4v4l-1.5 2h11L12 10V6a4 4 0 0 0-4-4zM6.5 14h3" />${sound === "on" ? null : html`<path d="M2 2l12 12" />`}</svg></button>
     <button type="button" class="icon" title="light or dark  T" aria-label=${`the ${theme === "dark" ? "light" : "dark"} look`} onClick=${app.otherTheme}>${theme === "dark" ? "☀" : "☾"}</button>
     <button type="button" class="icon" title="the keys  ?" aria-label="help and keys" onClick=${() => app.help.set(true)}>?</button>
   </header>`;
@@ -46,7 +48,7 @@ function doubtedBy(alerts) {
 
 function Verdict({ verified, verdicts, doubted, digest, scheduler }) {
   const wrong = verdicts.filter(({ property }) => doubted.has(property)).length;
-  return html`<details class=${`verdict ${!verified ? "not" : wrong ? "doubted" : "ok"}`}><summary aria-label=${verified ? "verified" : "not verified"}>${verified ? "✓" : "✗"}<span class="word"> ${verified ? "verified" : "not verified"}</span>${verdicts.length > 0 && html`<span class="many"> · ${verdicts.length} ${verdicts.length === 1 ? "property" : "properties"}${wrong ? `, ${wrong} on a broken assumption` : ""}</span>`}</summary>
+  return html`<details class=${`verdict ${!verified ? "not" : wrong ? "doubted" : "ok"}`}><summary><span aria-hidden="true">${verified ? "✓" : "✗"}</span><span class="word"> ${verified ? "verified" : "not verified"}</span>${verdicts.length > 0 && html`<span class="many"> · ${verdicts.length} ${verdicts.length === 1 ? "property" : "properties"}${wrong ? `, ${wrong} on a broken assumption` : ""}</span>`}</summary>
     <div class="sheet">
       <table><thead><tr><th scope="col">Property</th><th scope="col">Verdict</th><th scope="col">Rests on</th></tr></thead>
       <tbody>${verdicts.map((each) => html`<tr key=${each.property}><th scope="row">${each.property}</th><td>${each.verdict}${doubted.has(each.property) ? ", but rests on a broken assumption" : ""}</td>

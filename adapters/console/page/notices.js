@@ -82,6 +82,6 @@ function textOf(action, state, why = "", more = []) {
 
 export function NoticeList({ app }) {
   const notices = useWatched(app.notices.list);
-  return html`<ul class="notices" role="status">${notices.map(({ number, text, state }) => html`<li key=${number} class=${`notice ${state}`}><span>${text}</span>
-    <button type="button" aria-label="close this notice" onClick=${() => app.notices.close(number)}>×</button></li>`)}</ul>`;
+  return html`<div class="notices" role="status">${notices.map(({ number, text, state }) => html`<p key=${number} class=${`notice ${state}`}><span>${text}</span>
+    <button type="button" aria-label="close this notice" onClick=${() => app.notices.close(number)}>×</button></p>`)}</div>`;
 }

@@ -29,7 +29,7 @@ export function useStillness(list) {
   };
   const touch = (event) => {
     touched.current = performance.now();
-    hold(event.target.closest?.(".card"));
+    hold(event.target.closest?.(".card, .fleet"));
     wait();
   };
   const release = () => {

@@ -4,7 +4,7 @@ import { Ticking, say } from "./clock.js";
 import { momentOf, since, utc } from "./units.js";
 
 export const SPEEDS = [0.5, 1, 2, 5, 10, 20, 50, 100];
-export const SORTS = ["world", "control", "say", "finding", "action"];
+export const SORTS = ["world", "control", "say", "finding", "action", "note"];
 const PAUSE = 80;
 
 /** The moment of the nearest tick before or after `now` whose sort is shown, null if there is none. */

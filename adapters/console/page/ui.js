@@ -128,5 +128,4 @@ export function memo(draw) {
   };
 }
 
-const NATURAL = new Intl.Collator("en", { numeric: true });
-export const byName = (a, b) => NATURAL.compare(a, b);
+export { byName } from "./natural.js";

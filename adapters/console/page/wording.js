@@ -1,4 +1,11 @@
 /** The operator's words for requests, orders and their states; other panels show the terms of the calculus. */
+import { shapeOfKind } from "./map/symbols.js";
+import { byName } from "./natural.js";
+
+const MOVES = { vessel: "sails", submarine: "sails", rover: "drives" };
+
+/** How a kind of vehicles moves: boats sail. */
+export const moves = (kind) => MOVES[shapeOfKind(kind)] ?? "flies";
 
 const placed = { region: "outside all named places" };
 
@@ -9,8 +16,8 @@ const within = (name) => (name === null || name === undefined ? "nowhere" : name
 
 /** The believed and the actual place of a vehicle or an entity; a vehicle under way is in no place until it arrives. */
 export function whereabouts(card) {
-  const { believed, actual, differs, going, order, request, returning, taken } = card;
-  if (returning) return `${placeName(believed)} → flies home`;
+  const { believed, actual, differs, going, order, request, returning, taken, kind } = card;
+  if (returning) return `${placeName(believed)} → ${moves(kind)} home`;
   if (!differs) return placeName(believed);
   const to = isUnderWay(order) ? order.to : going && !request && !taken ? going : null; // this station does not see another's order
   if (to) return `${placeName(believed)} → under way to ${to}`;
@@ -28,7 +35,7 @@ export function wayOf({ order, returning, home }) {
 
 /** For each command of missions: its form, the words for a waiting agent, and the words for the flight. */
 const ASKED = [
-  [/^MOVE_HOST_TO (\S+)/, "to be sent to $1", "flies to $1"],
+  [/^MOVE_HOST_TO (\S+)/, "to be sent to $1", "$moves to $1"],
   [/^MOVE (\S+) TO (\S+)/, "$1 to be sent to $2", "$1 goes to $2"],
   [/^PUT (\S+) IN (\S+)/, "$1 to be put in $2", "$1 goes to $2"],
   [/^HAND (\S+) TO (\S+)/, "$1 to be handed to $2", "$1 is handed to $2"],
@@ -38,7 +45,7 @@ const ASKED = [
 const REQUEST = /^([A-Z]+)\(([^,]+), (.*)\)$/s;
 
 /** The words for a pending request. */
-export function requestWords({ text, agent }) {
+export function requestWords({ text, agent }, kind) {
   const [, sort, by = agent, what = text] = REQUEST.exec(text) ?? [];
   if (sort === "OBS" || sort === "READY") return `${by} looks around`;
   if (sort === "MGR") return `${by} moves to ${what}`;
@@ -46,11 +53,11 @@ export function requestWords({ text, agent }) {
   const [pattern, asked, going] = ASKED.find(([each]) => each.test(what)) ?? [];
   if (!pattern) return sort === "FLY" ? `${by}'s order is carried out` : `${by} waits for its order to be sent`;
   const parts = pattern.exec(what);
-  return (sort === "FLY" ? going : `waits ${asked}`).replace(/\$(\d)/g, (_, rank) => parts[rank]);
+  return (sort === "FLY" ? going : `waits ${asked}`).replace("$moves", moves(kind)).replace(/\$(\d)/g, (_, rank) => parts[rank]);
 }
 
 const DEEDS = {
-  GoTo: (to) => `flies to ${to}`,
+  GoTo: (to, kind) => `${moves(kind)} to ${to}`,
   Follow: (to) => `follows ${to}`,
   Hold: () => "holds",
   Return: () => "returns home",
@@ -65,9 +72,9 @@ const OVER = ["arrived", "refused"];
 const bare = (name) => (name ?? "").split(":").at(-1);
 
 /** A vehicle's last order and its state; while the vehicle flies home, it carries out no other order. */
-export function orderWords({ command, to, state, why }, returning = false) {
-  const deed = DEEDS[command]?.(bare(to)) ?? [command, bare(to)].filter(Boolean).join(" to ");
-  if (returning && isUnderWay({ command, to, state })) return `${deed}: not now, it flies home`;
+export function orderWords({ command, to, state, why }, returning = false, kind = "") {
+  const deed = DEEDS[command]?.(bare(to), kind) ?? [command, bare(to)].filter(Boolean).join(" to ");
+  if (returning && isUnderWay({ command, to, state })) return `${deed}: not now, it ${moves(kind)} home`;
   return `${deed}, ${(state === "arrived" && ENDS[command]) || (STATES[state] ?? state)}${why ? `: ${why}` : ""}`;
 }
 
@@ -85,7 +92,7 @@ const FALLEN_BACK = { hold: "vehicles were commanded to hold", return: "vehicles
 export const findingWords = ({ message, fallback }) => [message, FALLEN_BACK[fallback]].filter(Boolean).join(" · ");
 
 const FATES = { asked: "asked, not sent yet", sent: "sent, not confirmed yet", confirmed: "confirmed by the vehicle", refused: "refused" };
-const OURS = /^(say|give back|acknowledge|start)/;
+const OURS = /^(say|give back|acknowledge|start|note)/;
 
 /**
  * The words for an action's state. An accepted action that no vehicle confirms is done, unless it has no effect. The run
@@ -102,7 +109,7 @@ export function fateOf({ what, state, vain, fates, answered }) {
 const isOwed = ({ fates, answered }) => !answered && Object.keys(fates ?? {}).length > 0;
 
 /** The state of an order to several vehicles, for each vehicle. */
-export const eachFate = ({ fates }) => (Object.keys(fates ?? {}).length > 1 ? Object.entries(fates).map(([name, { state, why }]) => `${name}: ${FATES[state]}${why ? `: ${why}` : ""}`) : []);
+export const eachFate = ({ fates }) => (Object.keys(fates ?? {}).length > 1 ? Object.entries(fates).sort(([a], [b]) => byName(a, b)).map(([name, { state, why }]) => `${name}: ${FATES[state]}${why ? `: ${why}` : ""}`) : []);
 
 /** An operator's order to a vehicle, and its state. */
 export const orderedWords = ({ order, by, state, why }) => `to ${order}, by ${by || "someone"}: ${state === "refused" ? `refused, and repeated: ${why}` : FATES[state]}`;

@@ -30,6 +30,7 @@ EXAMPLES: Final = (
     "bigactors replay traces/oil_spill/over_the_spill-witness/trace.json",
     "bigactors replay run.json --mission changed.mission",
     "bigactors replay run.mcap --speed 10",
+    "bigactors replay run.mcap --report flight.html",
     "bigactors replay run.json --waypoints uav0=uav0.plan",
     "bigactors replay flight.tlog --mission oil_spill --name mavlink:1=uav0",
 )
@@ -64,12 +65,19 @@ def add_arguments(parser: Parser) -> None:
         help="write the destinations of a vehicle in the trace, with their altitudes, for ground stations: as "
         "QGC WPL 110 (.waypoints) or as a plan (.plan); may be repeated",
     )
+    parser.add_argument(
+        "--report",
+        metavar="FILE",
+        type=named,
+        help="write the report of a recorded flight as a page: mission, verdict, vehicles, findings, and who did what",
+    )
     parser.add_argument("--step", action="store_true", help="wait for Enter before each step")
     add_variation(parser)
 
 
 def run(options: Namespace) -> Exit:
     """Replay a trace and print it; stop at a step that the rules do not allow."""
+    from bigactors.commands.replay.report_file import write_report
     from bigactors.commands.replay.trace_reader import is_foreign, read_trace
     from bigactors.commands.replay.waypoint_export import write_route
     from bigactors.mission_lookup import variation_of
@@ -93,6 +101,8 @@ def run(options: Namespace) -> Exit:
     say(f"c{len(trace)} = {print_configuration(trace.configurations[-1])}")
     again = f", and {print_loop(trace)}" if trace.loop is not None else ""
     say(f"{options.trace}: {len(trace)} steps replayed on {found.mission.name}{again}")
+    if options.report is not None:
+        write_report(options.trace, options.report)
     for vehicle, path in options.waypoints:
         tell(f"{write_route(trace, vehicle, path)} waypoints of {vehicle} written to {path}")
     return Exit.HOLDS
@@ -108,6 +118,8 @@ def show_foreign(options: Namespace) -> Exit:
     from physical.wordings import counted
     from semantics.state.abstraction import all_as_it_is
 
+    if options.report is not None:
+        raise Mistake("a recording by other programs has no verdict", "leave out --report", options.trace)
     if options.waypoints:
         raise Mistake(
             "a recording by other programs has no destinations", "leave out --waypoints", options.trace

@@ -10,7 +10,7 @@ from typing import Any, Final
 from adapters.live.core import obeying
 from adapters.live.loop import LiveRun
 from adapters.live.plan import Plan
-from adapters.plugin import Plugin, Status
+from adapters.plugin import Plugin, Status, preflights
 from bigactors.commands.run.preflight_checks import check_idle, check_places, get_to_know
 from bigactors.commands.run.way_checks import check_ways, unwatched
 from specs.elaboration import ElaboratedMission
@@ -19,7 +19,7 @@ EVERY: Final = 0.25
 """Seconds between two updates of the list of checks."""
 
 Item = dict[str, Any]
-"""A check before the start: its name `what`, its state `done`, and its `detail`."""
+"""A check before the start: its name `what`, its state `done`, its `detail`; for a `vehicle` its readiness, too."""
 
 Telling = Callable[[dict[str, Any], float], None]
 """Takes the list of checks, and the time."""
@@ -120,7 +120,12 @@ def _items(live: LiveRun, before: StartChecks, *, checked: bool) -> Iterator[Ite
     for vehicle in sorted(live.plan.vehicles):
         said = live.inbox.statuses.get(vehicle)
         heard = vehicle in live.state.sightings.newest
-        yield _item(f"{vehicle} is heard", done=heard, detail=_told(said) if said and heard else "")
+        item = _item(f"{vehicle} is heard", done=heard, detail=_told(said) if said and heard else "")
+        found = next(
+            (each.readiness(vehicle) for each in preflights(before.plugins) if each.owns(vehicle)), None
+        )
+        more = {} if found is None else {"fence": found.fence, "refuses": list(found.refuses)}
+        yield {**item, "vehicle": vehicle, **more}
     yield _item("places and fences fit the vehicles", done=checked)
     yield from _of_ways(live.plan, before.mission)
 

@@ -43,7 +43,7 @@ def add_arguments(parser: Parser) -> None:
         metavar="FILE",
         type=named,
         help="write a picture (.svg or .png), a page that steps through the whole trace (.html), or the tracks "
-        "of a trace or recording (.geojson); default: MISSION.svg in this folder",
+        "of a trace or recording (.geojson, .gpx or .csv); default: MISSION.svg in this folder",
     )
     parser.add_argument(
         "--trace",
@@ -100,15 +100,15 @@ NARROW, WIDE = 40, 200
 
 def run(options: Namespace) -> Exit:
     """Print and draw the initial configuration of a mission, or the requested view of a trace."""
+    from adapters.recording.recorded_tracks import WRITERS
     from checker import ReplayError
-    from physical.place_files import GEOJSON
 
     if options.timeline:
         return _show_timeline(options)
     try:
         if options.against is not None:
             return _compare(options)
-        if options.output and Path(options.output).suffix.lower() in GEOJSON:
+        if options.output and Path(options.output).suffix.lower() in WRITERS:
             return _write_tracks(options)
         name, trace, times, step, asked = _chosen(options)
     except ReplayError as error:

@@ -1,17 +1,16 @@
-"""The tracks of a recording or a trace as GeoJSON: the dated positions of each entity."""
+"""The tracks of a recording or a trace: the dated positions of each entity, as GeoJSON, GPX or CSV."""
 
 from __future__ import annotations
 
-from collections import defaultdict
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
-from typing import Any
 
-from adapters.recording.mcap_files import McapReader, RecordingError
+from adapters.recording.mcap_files import RecordingError
+from adapters.recording.recorded_tracks import WRITERS, recorded_tracks
 from bigactors.files import write_text
 from bigactors.mistakes import Mistake, unreadable
 from checker import Trace
-from physical.geojson_tracks import PositionFix, Track, write_tracks
+from physical.geojson_tracks import PositionFix, Track
 from physical.shape import Geometry
 from semantics.state.configuration import Configuration
 from semantics.state.physical_model import Placed
@@ -19,31 +18,13 @@ from semantics.state.physical_model import Placed
 
 def write_recorded(path: str, output: str) -> int:
     """Write the tracks of all recorded entities with point positions; return their number; raises Mistake."""
-    kinds: dict[str, str] = {}
-    found: defaultdict[str, list[PositionFix]] = defaultdict(list)
     try:
-        for message in McapReader(Path(path)).messages():
-            match message.data:
-                case {"entity": str(entity), "ring": [[int(north), int(east)]], **more} if (
-                    message.topic == "arrivals"
-                ):
-                    kinds[entity] = str(more.get("kind") or "")
-                    found[entity].append(_fix(north, east, message.time, more))
+        found = recorded_tracks(Path(path))
     except RecordingError as error:
         raise Mistake(str(error), place=path) from error
     except OSError as error:
         raise unreadable(path, error) from error
-    return _write([Track(name, kinds[name], tuple(fixes)) for name, fixes in sorted(found.items())], output)
-
-
-def _fix(north: int, east: int, time: float, more: Mapping[Any, Any]) -> PositionFix:
-    """Return a position, dated by its observation, or else by its arrival."""
-    height = None
-    match more.get("altitude"):
-        case [int() | float() as low, int() | float() as high]:
-            height = (low + high) / 2
-    seen = more.get("time")
-    return PositionFix((north, east), seen if isinstance(seen, int | float) else time, height)
+    return _write(found, output)
 
 
 def write_traced(trace: Trace, times: Sequence[float], output: str) -> int:
@@ -75,5 +56,5 @@ def _write(tracks: Sequence[Track], output: str) -> int:
         raise Mistake(
             "nothing in it moves: there are no tracks to be written", "draw it: --output FILE.svg", output
         )
-    write_text(output, write_tracks(tracks))
+    write_text(output, WRITERS[Path(output).suffix.lower()](tracks))
     return len(tracks)

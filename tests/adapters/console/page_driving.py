@@ -113,6 +113,12 @@ class Operator:
     def clicks(self, selector, text=""):
         self.page.locator(selector, has_text=text).first.click()
 
+    def opens(self, name):
+        """Open a vehicle's card in the table."""
+        if self.count(f"[data-row={name}]") and not self.count(f".card[data-name={name}]"):
+            self.clicks(f"[data-row={name}] .name")
+        self.sees(f".card[data-name={name}]")
+
     def writes(self, field, text, caret):
         """Write a text, move the caret back into it, and return the answer of `caret`."""
         self.page.locator(field).fill("")

@@ -229,11 +229,13 @@ def recorded(action, by):
     """Return what a run records of an action that it took, None of what it records elsewhere."""
     match action:
         case {"order": {"order": order, "vehicle": vehicle}}:
-            told = [vehicle] if vehicle else ["uav0", "uav1"]
-            fates = {name: {"state": "sent", "why": ""} for name in told}
-            return deed(time.time(), by, order, vehicle or "all", "sent") | {"fates": fates}
+            named = vehicle if isinstance(vehicle, list) else [vehicle] if vehicle else []
+            fates = {name: {"state": "sent", "why": ""} for name in named or ("uav0", "uav1")}
+            return deed(time.time(), by, order, ", ".join(named) or "all", "sent") | {"fates": fates}
         case {"say": {"agent": agent, "message": message}}:
             return deed(time.time(), by, f'say "{message}"', agent)
+        case {"note": {"text": text}}:
+            return deed(time.time(), by, "note", text)
         case {"give_back": {"vehicle": vehicle}}:
             return deed(time.time(), by, "give back", vehicle)
     return None
@@ -287,9 +289,15 @@ def world():
             "2": deed(now - 100, "Rui", "return", "uav1", "refused", taken),
         },
         "stations": {
-            "porto": {"here": True, "reached": None, "heard": None, "vehicles": ["uav0", "uav1"]},
-            "faro": {"here": False, "reached": True, "heard": now - 2, "vehicles": ["boat0"]},
-            "lagos": {"here": False, "reached": False, "heard": now - 120, "vehicles": []},
+            "porto": {
+                "here": True,
+                "reached": None,
+                "heard": None,
+                "agrees": None,
+                "vehicles": ["uav0", "uav1"],
+            },
+            "faro": {"here": False, "reached": True, "heard": now - 2, "agrees": True, "vehicles": ["boat0"]},
+            "lagos": {"here": False, "reached": False, "heard": now - 120, "agrees": None, "vehicles": []},
         },
     }
 

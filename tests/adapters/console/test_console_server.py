@@ -1,9 +1,13 @@
 """A console's server, asked by real clients over loopback: whom it lets in, what it serves, and how much of it."""
 
 import asyncio
+import csv
+import json
 import select
 import socket
 from contextlib import ExitStack, asynccontextmanager
+from io import StringIO
+from xml.etree import ElementTree
 
 import aiohttp
 import pytest
@@ -62,7 +66,12 @@ async def test_pages_of_others_and_other_names_of_this_machine_are_refused_and_i
 
 async def test_coast_and_tiles_need_the_token(recording):
     async with visited(recording) as (session, address):
-        for path in ("/land?south=36&west=-9&north=38&east=-8", "/tiles"):
+        for path in (
+            "/land?south=36&west=-9&north=38&east=-8",
+            "/tiles",
+            "/export/track.gpx",
+            "/export/report.html",
+        ):
             for headers in ({}, {"Authorization": "Bearer guessed"}, {"Authorization": "may-act"}):
                 async with session.get(f"{address}{path}", headers=headers) as answer:
                     assert answer.status == 401, (path, headers)
@@ -80,6 +89,36 @@ async def test_the_coast_is_geojson_and_a_window_that_is_none_is_refused(recordi
             sides = zip(("south", "west", "north", "east"), window.split(), strict=False)
             async with session.get(f"{address}/land", params=dict(sides)) as answer:
                 assert answer.status == 400, window
+
+
+async def test_the_flown_track_is_the_same_in_each_format_and_the_report_names_who_did_what(recording):
+    files = {}
+    async with visited(recording, headers=BEARER) as (session, address):
+        for name in ("track.gpx", "track.csv", "track.geojson", "report.html"):
+            async with session.get(f"{address}/export/{name}") as answer:
+                files[name] = await answer.text()
+        for name in ("track.html", "report.gpx", "run.mcap", "..%2Ftrack.gpx"):
+            async with session.get(f"{address}/export/{name}") as answer:
+                assert answer.status == 404, name
+    points = ElementTree.fromstring(files["track.gpx"]).iter("{http://www.topografix.com/GPX/1/1}trkpt")
+    of_gpx = [(float(each.get("lon")), float(each.get("lat"))) for each in points]
+    rows = list(csv.DictReader(StringIO(files["track.csv"])))
+    (feature,) = json.loads(files["track.geojson"])["features"]
+    of_csv = [(float(each["longitude"]), float(each["latitude"])) for each in rows]
+    assert of_gpx == of_csv == [tuple(each[:2]) for each in feature["geometry"]["coordinates"]]
+    assert [each["time"] for each in rows] == feature["properties"]["coordTimes"]
+    assert ({each["name"] for each in rows}, len(rows)) == ({"uav0"}, 43)
+    report = files["report.html"]
+    for told in (
+        "Flight of tour.mission",
+        "lost link",
+        "its pilot has taken over",
+        "say &quot;handover&quot;",
+        "uav0",
+        "UAV",
+    ):
+        assert told in report, told
+    assert "1970-01-01 00:16:40 UTC to 1970-01-01 00:17:42 UTC" in report
 
 
 async def test_of_tiles_a_part_is_answered(recording, tmp_path):

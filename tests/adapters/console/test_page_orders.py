@@ -123,6 +123,7 @@ def sends_it_under_the_name_that_is_given(ana):
 
 def test_only_a_long_press_orders_by_mouse_key_and_finger(operates):
     ana = operates(has_touch=True)
+    ana.opens("uav0")
     for press in (by_mouse, by_key, by_finger):
         presses_shortly_and_is_told_to_press_longer(ana, press)
         presses_for_a_second_and_orders_once(ana, press)
@@ -155,7 +156,8 @@ def orders_all_and_gives_one_back(ana):
     for which in ("hold", "return"):
         ana.holds(f"[aria-label^='{which.title()} all']")
         ana.sees(".notice.sent", f"{which} all: sent, not confirmed yet")
-    ana.holds("[aria-label^='Give uav1 back']")
+    ana.opens("uav1")
+    ana.holds("[aria-label^='Give back uav1']")
     ana.sees(".notice.confirmed", "give back uav1: done")
     orders = [{"order": {"order": each, "vehicle": None}} for each in ("hold", "return")]
     assert ana.asked() == [*orders, {"give_back": {"vehicle": "uav1"}}]
@@ -169,8 +171,30 @@ def is_refused_and_reads_why(ana):
     assert ana.asked() == [SAID]
 
 
+def test_several_are_chosen_in_the_table_and_ordered_at_once(operates):
+    ana = operates()
+    rows = ana.page.locator(".fleet .row").evaluate_all(
+        "all => all.map((e) => e.getBoundingClientRect().height)"
+    )
+    assert rows == [28, 28, 28, 28]
+    assert [each.split()[-1] for each in ana.texts(".fleet .name")] == ["uav1", "uav10", "uav0", "boat0"]
+    for name in ("uav0", "uav10"):
+        ana.page.get_by_label(f"choose {name} for").check()
+    ana.holds(".several [aria-label^='Hold uav10, uav0']")
+    ana.sees(".notice.sent", "hold uav10, uav0: sent, not confirmed yet")
+    ana.sees(".fates .aside", "uav10: sent, not confirmed yet")
+    several = {"order": {"order": "hold", "vehicle": ["uav10", "uav0"]}}
+    assert ana.asked() == [several]
+    ana.holds(".several [aria-label^='Give back uav10, uav0']")
+    ana.sees(".notice.confirmed", "give back uav0: done")
+    assert ana.asked() == [{"give_back": {"vehicle": each}} for each in ("uav10", "uav0")]
+    ana.page.get_by_label("all", exact=True).check()
+    ana.sees(".several", "4 chosen")
+
+
 def test_an_order_is_followed_until_its_vehicle_has_confirmed_it(operates):
     ana = operates()
+    ana.opens("uav0")
     orders_and_sees_it_confirmed(ana)
     orders_again_and_sees_it_refused(ana)
     sees_the_refusal_stay_until_the_vehicle_obeys(ana)
@@ -214,7 +238,7 @@ def orders_again_and_sees_it_refused(ana):
 def sees_the_refusal_stay_until_the_vehicle_obeys(ana):
     ana.waits(60_000)  # longer than a notice of what is done, and of what is not confirmed
     ana.sees(".notice.refused", TOLD_AGAIN)
-    assert "confirmed" not in ana.page.locator("[data-name=uav0]").inner_text()
+    assert "confirmed" not in ana.page.locator(".card[data-name=uav0]").inner_text()
     fate = {"state": "confirmed", "why": ""}
     obeys = ana.harness.state["vehicles"]["uav0"] | {"taken": "held by the operator (Ana)"}
     done = change_of_last(ana, **fate, answered=time.time(), fates={"uav0": fate})
@@ -243,6 +267,7 @@ def test_two_who_act_at_once_see_each_others_actions_and_each_is_done_once(opera
     one = operates()
     other = operates(one.harness, name="")
     other.clicks("button", "Look first")  # a name is asked for at once, and again before an action
+    one.opens("uav0")
     one.holds(HOLD, by_key)
     other.holds(SAY)
     other.page.locator("#who-name").fill("Rui")
@@ -274,6 +299,7 @@ def waiting(state, *done):
     """Return the section of a run that waits, with what is done."""
     what = ["the mission is verified", "uav0 is heard", "places and fences fit the vehicles"]
     items = [{"what": each, "done": n in done, "detail": ""} for n, each in enumerate(what)]
+    items[1] |= {"vehicle": "uav0", "fence": "as given", "refuses": ["PreArm: Compass not calibrated"]}
     return {"state": state, "by": "", "items": items}
 
 
@@ -282,13 +308,25 @@ def read_what_is_still_to_be_done(ana, bo):
     for each in (ana, bo):
         each.sees(".preflight", "Before the start: nothing is commanded yet")
         each.sees(".preflight .start:disabled")
-        assert each.count(".preflight .open") == 2
+        assert each.count(".preflight .open") == 3  # and a station is not reached
+        each.sees(".preflight .open", "station lagos is reached: not yet")
+        each.sees(".preflight tr.open", "not heard")
 
 
 def start_it_when_all_is_done(ana, bo):
     ana.harness.change(preflight=waiting("ready", 0, 1, 2))
     for each in (ana, bo):
         each.sees(".preflight .start:enabled")
+        (row,) = each.texts(".preflight tbody tr")
+        for what in (
+            "uav0",
+            "37°00.000′N 008°42.000′W",
+            "GUIDED, armed",
+            "78 %",
+            "as given",
+            "Compass not calibrated",
+        ):
+            assert what in row
         box = each.box(".preflight .start")
         assert box["x"] >= 0
         assert box["x"] + box["width"] <= each.page.viewport_size["width"]

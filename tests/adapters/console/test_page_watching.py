@@ -26,16 +26,20 @@ def test_a_card_tells_of_a_flight_in_an_operators_words(operates):
     reads_that_a_request_stands_back_while_its_vehicle_is_held_or_given_up(ana)
     reads_how_far_it_is_to_the_edge_of_a_place(ana)
     reads_of_a_vehicle_on_its_way_home(ana)
+    reads_that_a_boat_sails(ana)
     reads_of_a_flight_that_another_station_ordered(ana)
     reads_how_long_a_timed_flight_takes(ana)
 
 
 def reads_no_calculus(ana):
+    ana.opens("uav0")
     ana.sees(f"{UAV0} .request", "flies to spillArea")
     ana.sees(UAV0, "flies to spillArea, accepted")
     ana.sees(f"{UAV0} .request", "then it returns home")
-    ana.sees(".card[data-name=uav10] .place", "believed in spillArea, really in searchArea0")
     assert re.findall(r"FLY|CTR|MOVE_HOST|GoTo|control:|≠", " ".join(ana.texts(".cards"))) == []
+    ana.opens("uav10")
+    ana.sees(".card[data-name=uav10] .place", "believed in spillArea, really in searchArea0")
+    ana.opens("uav0")
 
 
 def reads_that_a_request_stands_back_while_its_vehicle_is_held_or_given_up(ana):
@@ -68,6 +72,17 @@ def reads_of_a_vehicle_on_its_way_home(ana):
     ana.sees(f"{UAV0} .place", "→ flies home")
     ana.sees(f"{UAV0} dd", "6.91 nm home, 10 min 40 s or more")
     ana.sees(f"{UAV0} dd", "not now, it flies home")
+
+
+def reads_that_a_boat_sails(ana):
+    sails = card(kind="USV", order=flight(to="spillArea"))
+    ana.told(vehicles={"boat0": sails})
+    ana.opens("boat0")
+    ana.sees(".card[data-name=boat0]", "sails to spillArea, accepted")
+    ana.told(vehicles={"boat0": sails | {"returning": True}})
+    ana.sees(".card[data-name=boat0] .place", "→ sails home")
+    assert "flies" not in ana.page.locator(".card[data-name=boat0]").inner_text()
+    ana.opens("uav0")
 
 
 def reads_of_a_flight_that_another_station_ordered(ana):
@@ -109,6 +124,7 @@ def test_a_card_tells_what_its_vehicle_told_and_how_it_is(operates):
 
 
 def reads_what_was_last_heard_of_one_whose_link_is_lost(ana):
+    ana.opens("uav1")
     ana.sees(".card[data-name=uav1] dd", "when last heard: RTL · armed · heading 092°")
     ana.told(entities={"uav1": ana.harness.state["entities"]["uav1"]})
     ana.sees(".card[data-name=uav1] dd", "when last heard: 10.1 kn · 119 m above home")
@@ -117,6 +133,7 @@ def reads_what_was_last_heard_of_one_whose_link_is_lost(ana):
 def reads_of_a_change_of_authority_and_hears_it_announced(ana):
     handed = {"time": time.time(), "from": ["porto"], "to": ["gcs1"]}
     order = flight(command="HandOver", to="control:gcs1", way=[], state="arrived")
+    ana.opens("uav0")
     ana.told(vehicles={"uav0": card(authority=["gcs1"], handed=handed, order=order)})
     ana.sees(f"{UAV0} .changed", "was porto")
     ana.sees(UAV0, "handed to gcs1, done")
@@ -151,9 +168,9 @@ def reads_how_each_vehicle_is_and_not_only_how_bad_that_is(ana):
     names = ["uav0", "uav1", "uav10", "boat0"]
     cards = {name: card(3, word=word, why="because") for name, word in zip(names, words, strict=True)}
     ana.told(vehicles=cards)
-    assert sorted(ana.texts(".card .level")) == sorted(words)
+    assert sorted(ana.texts(".row .level")) == sorted(words)
     assert sorted(each[2:] for each in ana.texts(".tally")) == sorted(f"1 {each}" for each in words)
-    ana.sees(".card[data-name=boat0] .link", "last heard")
+    ana.sees("[data-row=boat0] .link", "last heard")
 
 
 def reads_at_which_step_the_picture_was_drawn(ana):
@@ -303,6 +320,7 @@ def is_offered_no_word_to_the_mission_but_orders_to_vehicles(ana):
     ana.sees(".sayings button:disabled")
     assert ana.count(".sayings button:enabled") == 0
     ana.sees(".actions", "Messages to its agents move no vehicle.")
+    ana.opens("uav0")
     assert ana.page.locator(HOLD).is_enabled()
     vain = ana.harness.state["sayings"]['tower "handover"']["vain"]
     ana.told(actions={"9": deed(time.time(), "Ana", 'say "handover"', "tower") | {"vain": vain}})
@@ -340,17 +358,18 @@ def test_what_is_shown_is_said_to_be_old_while_nothing_is_heard_and_comes_back_b
 
 def reads_that_the_recording_is_not_read_any_further_and_orders_on(ana):
     ana.sees(".badge.live", "LIVE")
-    ana.sees(".card[data-name=boat0] .level", "well")
+    ana.sees("[data-row=boat0] .level", "well")
     ana.told(clock={"unread": "it has become shorter than it was"})
     ana.sees(".badge.past", "OLD")
     ana.sees(".offline", "the recording cannot be read any further (it has become shorter than it was)")
-    ana.sees(".card[data-name=boat0] .level", "unknown")
-    ana.sees(".card[data-name=boat0] .link", "last heard")
+    ana.sees("[data-row=boat0] .level", "unknown")
+    ana.sees("[data-row=boat0] .link", "last heard")
+    ana.opens("uav0")
     ana.holds(HOLD)
     assert ana.asked() == [{"order": {"order": "hold", "vehicle": "uav0"}}]
     ana.told(clock={"unread": None})
     ana.sees_no(".offline")
-    ana.sees(".card[data-name=boat0] .level", "well")
+    ana.sees("[data-row=boat0] .level", "well")
 
 
 def loses_the_server_and_finds_it_again_with_what_was_typed(ana):
@@ -361,7 +380,7 @@ def loses_the_server_and_finds_it_again_with_what_was_typed(ana):
     assert ana.count(".held:enabled") == 0
     ana.harness.state["vehicles"]["new0"] = card()
     ana.harness.serve_again()
-    ana.sees(".card", "new0")
+    ana.sees(".fleet", "new0")
     ana.sees_no(".offline")
     ana.told(mission={"station": "coast0"}, clock={"live": False, "playing": False})
     ana.sees(".badge.past", "PAST")
@@ -375,8 +394,8 @@ def misses_a_frame_and_gets_all_of_it(ana):
     ana.harness.state["vehicles"]["lost0"] = card()
     before = len(ana.harness.hellos)
     ana.harness.change(vehicles={"late0": card()})
-    ana.sees(".card", "late0")
-    ana.sees(".card", "lost0")
+    ana.sees(".fleet", "late0")
+    ana.sees(".fleet", "lost0")
     assert len(ana.harness.hellos) == before + 1
 
 
@@ -384,7 +403,7 @@ def sees_what_was_shown_when_another_console_takes_the_address(ana):
     ana.harness.token = "another"
     ana.harness.hang_up()
     ana.sees(".offline", "another console is at this address now")
-    assert ana.count(".card") > 0
+    assert ana.count(".fleet") > 0
     assert ana.count(".held:enabled") == 0
 
 
@@ -392,7 +411,7 @@ def mends_a_token_that_is_refused(ana):
     ana.page.goto("about:blank")
     ana.page.goto(ana.harness.link + "x")
     ana.sees(".offline", "the token is not accepted")
-    assert ana.count(".card, .timeline, .top, [role=tab]") == 0
+    assert ana.count(".fleet, .timeline, .top, [role=tab]") == 0
     ana.harness.token = TOKEN
     known = ana.writes("#token", "a-tokem", 7)
     ana.presses("Enter")
@@ -400,4 +419,4 @@ def mends_a_token_that_is_refused(ana):
     ana.sees(".offline", "the token is not accepted")
     assert ana.caret() == known
     ana.presses("Backspace", "n", "Enter")
-    ana.sees(".card", "uav0")
+    ana.sees(".fleet", "uav0")

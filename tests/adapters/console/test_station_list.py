@@ -80,8 +80,8 @@ def test_other_stations_are_reached_or_not_as_they_were_heard(run, tmp_path):
         ("stations", 1003.0, {"station": "gcs1", "time": 1003.0, "reached": False, "heard": 1001.5}),
         ("stations", 1003.0, {"station": "nobody", "time": 1003.0, "reached": True, "heard": 1001.5}),
     )["stations"]
-    assert shown["gcs1"] == {"here": False, "reached": False, "heard": 1001.5, "vehicles": []}
-    assert shown["gcs2"] == {"here": False, "reached": None, "heard": None, "vehicles": []}
+    assert shown["gcs1"] == {"here": False, "reached": False, "heard": 1001.5, "agrees": None, "vehicles": []}
+    assert shown["gcs2"] == {"here": False, "reached": None, "heard": None, "agrees": None, "vehicles": []}
     assert set(shown) == set(STATIONS)
 
 

@@ -6,7 +6,7 @@ import time
 import pytest
 from live_missions import BETWEEN, EAST, TOUR, WEST, plan_of
 
-from adapters.live.batch import Acknowledging, GivingBack, Ordering, Saying
+from adapters.live.batch import Acknowledging, GivingBack, Noting, Ordering, Saying
 from adapters.live.core import started
 from adapters.live.loop import LiveRun, NotAsAssumed, NotHeard, PluginFailed
 from adapters.live.operator_socket import NobodyListens, acknowledge, listening, order, say, status
@@ -224,6 +224,8 @@ LINES = [
     (b'{"order": "hold", "vehicle": "uav0", "by": ""}', Ordering(Fallback.HOLD, "uav0")),
     (b'{"order": "return", "vehicle": null, "by": "Ana"}', Ordering(Fallback.RETURN, None, "Ana")),
     (b'{"acknowledge": 3, "by": "Ana"}', Acknowledging(3, "Ana")),
+    (b'{"order": "hold", "vehicle": ["uav0", "uav1"]}', Ordering(Fallback.HOLD, ("uav0", "uav1"))),
+    (b'{"note": "a boat waits", "by": "Ana"}', Noting("a boat waits", "Ana")),
 ]
 NONSENSE = [
     b'{"order": "continue", "vehicle": "uav0"}',
@@ -233,6 +235,9 @@ NONSENSE = [
     b'{"order": "hold", "vehicle": "uav0", "by": "a\\nb"}',
     b'{"order": "hold", "vehicle": "uav0", "by": "' + b"a" * 201 + b'"}',
     b'{"order": "hold", "vehicle": "' + b"a" * 2_001 + b'"}',
+    b'{"order": "hold", "vehicle": []}',
+    b'{"order": "hold", "vehicle": ["uav0", 7]}',
+    b'{"note": 7}',
     b'{"acknowledge": true}',
     b'{"acknowledge": "3"}',
     b'{"give_back": "uav0", "at": 5}',

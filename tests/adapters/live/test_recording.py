@@ -17,7 +17,7 @@ from json_mutations import mutated
 from live_missions import BETWEEN, EAST, TOUR, WEST, Run, boat, mission, plan_of, seen
 from scale import examples
 
-from adapters.live.batch import Acknowledging, GivingBack, Heard, Ordering, Saying
+from adapters.live.batch import Acknowledging, GivingBack, Heard, Noting, Ordering, Saying
 from adapters.live.operator_findings import Finding
 from adapters.plugin import (
     Accepted,
@@ -148,6 +148,11 @@ def test_what_vehicles_stations_and_operators_say_is_as_its_schema_says(tmp_path
     words = [Ordering(Fallback.RETURN, None, "Ana"), Ordering(Fallback.HOLD, "uav9", "")]
     words += [Acknowledging(1, "Ana"), Acknowledging(7, "Ana")]
     words += [Saying("a", "go", "Ben"), GivingBack("uav0", "", "Ben")]
+    words += [
+        Ordering(Fallback.HOLD, ("uav0", "uav9"), "Ben"),
+        Noting("a boat waits", "Ben"),
+        Noting(" ", "Ben"),
+    ]
     for turn in (run.turn(3.0, seen("uav0", WEST, 3.0)), *(run.turn(4.0, sayings=[word]) for word in words)):
         recorder.turn(turn, 4.0, lambda _finding: ())
     recorder.close("done", 5.0)
@@ -166,7 +171,10 @@ def test_what_vehicles_stations_and_operators_say_is_as_its_schema_says(tmp_path
     assert said["orders"] == [
         {"order": "return", "vehicle": None, "by": "Ana", "requests": {"uav0": "operator-2"}, "refusal": ""},
         {"order": "hold", "vehicle": "uav9", "by": "", "requests": {}, "refusal": no},
+        {"order": "hold", "vehicle": ["uav0", "uav9"], "by": "Ben", "requests": {"uav0": "operator-5"}}
+        | {"left_out": {"uav9": no}, "refusal": ""},
     ]
+    assert said["notes"] == [{"text": "a boat waits", "by": "Ben"}]
     assert said["acknowledged"] == [{"finding": 1, "by": "Ana"}]
     assert [each["by"] for each in (*said["sayings"], *said["given_back"])] == ["Ben", "Ben"]
 

@@ -48,12 +48,12 @@ def three(tmp_path):
             yield stations, cables
 
 
-def a_console_reaches(station):
-    """Return which stations a console that looks at one says to be reached."""
+def a_console_reaches(station, what="reached"):
+    """Return which stations a console that looks at one says to be reached, or to have the same L."""
     history = History(station.recording, rules_of)
     while history.read_on(1.0):
         pass
-    return {name: each["reached"] for name, each in history.newest().sections["stations"].items()}
+    return {name: each[what] for name, each in history.newest().sections["stations"].items()}
 
 
 def test_all_come_to_one_world_though_one_is_killed_and_one_is_cut_off(three):
@@ -83,4 +83,6 @@ def test_all_come_to_one_world_though_one_is_killed_and_one_is_cut_off(three):
 
     gcs1.see(boat0=NOWHERE)
     agree(stations, boat0="region", boat1="west0")
+    until(lambda: a_console_reaches(gcs0, "agrees") == {"gcs0": None, "gcs1": True, "gcs2": True})
+    assert not any("differs from ours" in each.said for each in stations)
     assert read_recording(gcs1.recording).run["station"]["here"] == "gcs1"

@@ -36,6 +36,7 @@ from adapters.plugin import (
     Underway,
     entity_of,
 )
+from adapters.stations import remote_station
 from adapters.stations.entries import Broke, Posted, Took, VehicleSent
 from adapters.stations.entries import Said as EntrySaid
 from adapters.stations.journal import SCHEMA, Journal, JournalError
@@ -209,6 +210,21 @@ async def test_who_is_reached_and_when_each_was_heard_is_told_on_change_and_seld
     assert told[-1].heard >= told[-2].heard
     for before, after in pairwise(told):
         assert before.reached != after.reached or after.time - before.time >= SELDOM
+
+
+async def test_stations_that_believe_otherwise_for_a_while_say_so_until_they_agree(tmp_path, monkeypatch):
+    monkeypatch.setattr(remote_station, "SETTLED", 1.5)
+    west = plan_of(TOUR).first
+    east = west.with_(west.structure.logical.nesting("uav0", "east0"))
+    async with two(tmp_path) as (gcs0, gcs1):
+        gcs0.sharing._logical = gcs1.sharing._logical = west.structure.logical
+        agreed = lambda: [each.agrees for each in gcs0.world.of(Presence)][-1:]  # noqa: E731
+        await until(lambda: agreed() == [True])
+        gcs1.sharing._logical = east.structure.logical
+        await until(lambda: agreed() == [False])
+        assert gcs0.world.troubles().count("the L of gcs1 differs from ours") == 1
+        gcs0.sharing._logical = east.structure.logical
+        await until(lambda: agreed() == [True])
 
 
 async def test_a_clock_that_is_off_is_measured_and_said_and_what_is_too_far_ahead_does_not_count(tmp_path):

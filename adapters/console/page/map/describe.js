@@ -1,6 +1,7 @@
 /** Descriptions of the chart in words, for screen readers and for the tip at the pointer. */
 import { ageClass, FRESH } from "./ages.js";
 import { isAstray, orderWords, whereabouts } from "../wording.js";
+import { byName } from "../natural.js";
 import { age, angle, position, speed } from "../units.js";
 import { counted, drawable, plain } from "./words.js";
 
@@ -20,7 +21,7 @@ function describeEntity(name, entity, card, now) {
   const old = ageClass(entity, now) === FRESH ? "" : ", old";
   const facts = [drawable(name), String(entity.kind ?? ""), position(entity.at), motion(entity), `${heard}${old}`];
   const place = entity.differs ? whereabouts({ ...card, ...entity }) : "";
-  const order = card?.order ? orderWords(card.order, card.returning) : "";
+  const order = card?.order ? orderWords(card.order, card.returning, entity.kind) : "";
   return [...facts, plain(place), plain(order), card?.why ?? ""].filter((line) => line !== "");
 }
 
@@ -31,7 +32,7 @@ function motion({ course, speed: fast }) {
 
 /** The whole chart in a few sentences. */
 export function summary(store, now, centre) {
-  const entities = [...store.section("entities")];
+  const entities = [...store.section("entities")].sort(([a], [b]) => byName(a, b));
   const vehicles = entities.filter(([, { vehicle }]) => vehicle);
   const differing = entities.filter(([name, entity]) => isAstray({ ...store.section("vehicles").get(name), ...entity })).map(([name]) => drawable(name));
   const said = vehicles.slice(0, 20).map(([name]) => describe(name, store, now).slice(0, 5).join(", "));

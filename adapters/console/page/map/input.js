@@ -35,7 +35,6 @@ export function listenForKeys(element, chart) {
 function keyDeed(event, chart) {
   const withControl = event.ctrlKey || event.metaKey;
   if (withControl) return event.key.toLowerCase() === "c" && !String(getSelection()) && Boolean(chart.copyPosition());
-  if (event.key === "Tab") return chart.nextVehicle(event.shiftKey ? -1 : 1);
   if (event.key === "Enter") return chart.clickMiddle();
   if (event.key === "Backspace") return chart.undo();
   return event.key === "Escape" && chart.escape();

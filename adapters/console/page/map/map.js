@@ -25,12 +25,11 @@ const STILL = ["places", "fences"];
 const SUMMARY = 3000; // milliseconds between two texts for screen readers
 const CREDIT = "Coast: Natural Earth, good to about 1 km. Not for navigation.";
 const EDGE = 20; // the least pixels between a chosen thing and the edge
-const NAMES = new Intl.Collator("en", { numeric: true });
 
 /**
  * Show a store's state on a map in an element. The map calls `select(name)` when the operator chooses a thing, with null
  * for nothing. It calls `followed(null)` and `measured(false)`, which are optional, when it ends following or measuring.
- * `covers()` returns the elements of the page that lie over the map.
+ * `covers()` returns the elements of the page that lie over the map, `hidden()` the names that it does not show.
  */
 export function createMap(container, store, options) {
   return new Chart(container, store, options);
@@ -54,14 +53,13 @@ class Chart {
   #pointer = null;
   #pixel = null;
   #isFitted = false;
-  #isLeaving = false;
   #second = NaN;
   #summaryTimer = null;
   #ends = [];
 
-  constructor(container, store, { select, fetchJson, tiles = null, followed = () => {}, measured = () => {}, covers = () => [] }) {
+  constructor(container, store, { select, fetchJson, tiles = null, followed = () => {}, measured = () => {}, covers = () => [], hidden = () => new Set() }) {
     this.#store = store;
-    this.#options = { select, followed, measured, covers };
+    this.#options = { select, followed, measured, covers, hidden };
     this.#tracks = new Tracks(store.section("tracks"));
     this.#tracks.update([]);
     this.#parts = addParts(container);
@@ -84,6 +82,7 @@ class Chart {
     const at = name === null ? null : this.pointOf(name);
     if (at && !this.#surface.view.sees(at, -EDGE)) this.#centreOn(name);
     this.#sayPosition();
+    if (document.activeElement === this.#parts.leaflet) say(this.#parts.told, name === null ? "" : describe(name, this.#store, this.#now).join(", "));
     this.#surface.invalidate("moving");
   }
 
@@ -140,6 +139,27 @@ class Chart {
     const copied = navigator.clipboard?.writeText(text) ?? Promise.reject(new Error("no clipboard"));
     copied.then(() => told(`${text} copied`), () => told(`The browser does not let this page copy ${text}`));
     return text;
+  }
+
+  /** The map as it is seen now: a PNG, with the time and the sources. */
+  async picture() {
+    this.#surface.draw();
+    const { leaflet, credit } = this.#parts;
+    const { left, top, width, height } = leaflet.getBoundingClientRect();
+    if (!width || !height) throw new Error("the map is not shown");
+    const ratio = globalThis.devicePixelRatio || 1;
+    const made = Object.assign(document.createElement("canvas"), { width: width * ratio, height: height * ratio });
+    const ctx = made.getContext("2d");
+    ctx.scale(ratio, ratio);
+    ctx.fillStyle = this.#surface.palette.sea;
+    ctx.fillRect(0, 0, width, height);
+    for (const each of leaflet.querySelectorAll("canvas, img.leaflet-tile")) {
+      const box = each.getBoundingClientRect();
+      if (box.width) ctx.drawImage(each, box.left - left, box.top - top, box.width, box.height);
+    }
+    Object.assign(ctx, { font: "12px system-ui, sans-serif", fillStyle: this.#surface.palette.ink, textBaseline: "bottom" });
+    ctx.fillText(`${new Date(this.#now * 1000).toISOString().slice(0, 19)}Z · ${credit.textContent}`, 8, height - 6);
+    return new Promise((resolve, reject) => made.toBlob((blob) => (blob ? resolve(blob) : reject(new Error("the browser draws no picture"))), "image/png"));
   }
 
   // --- for tests and screen readers ------------------------------------------------------------------------------
@@ -219,30 +239,15 @@ class Chart {
     return true;
   }
 
-  /** End measuring, or choose nothing and let the next Tab leave the map. */
+  /** End measuring, or choose nothing. */
   escape() {
     if (this.#measure.on) {
       this.measure(false);
       this.#options.measured(false);
       return true;
     }
-    this.#isLeaving = true;
     if (this.#chosen === null) return false;
     this.#select(null);
-    return true;
-  }
-
-  /** Choose the vehicle after or before; false after the last, so that Tab leaves the map. */
-  nextVehicle(by) {
-    const names = [...this.#store.section("vehicles").keys()].sort(NAMES.compare);
-    const now = names.indexOf(this.#chosen);
-    const next = now < 0 ? (by > 0 ? 0 : names.length - 1) : now + by;
-    if (this.#isLeaving || next < 0 || next >= names.length) {
-      this.#isLeaving = false;
-      return false;
-    }
-    this.#select(names[next]);
-    say(this.#parts.told, describe(names[next], this.#store, this.#now).join(", "));
     return true;
   }
 
@@ -391,7 +396,7 @@ class Chart {
   }
 
   #drawMoving(pen) {
-    const marks = { now: this.#now, chosen: this.#chosen, hovered: this.#hovered, slots: this.#slots, covered: this.#covered };
+    const marks = { now: this.#now, chosen: this.#chosen, hovered: this.#hovered, slots: this.#slots, covered: this.#covered, hidden: this.#options.hidden() };
     this.#drawn = drawMoving(pen, this.#store, this.#tracks, marks);
     this.#measure.draw(pen);
   }
@@ -431,7 +436,7 @@ function addParts(container) {
 function describeForReaders({ leaflet, summary: words, tip }) {
   leaflet.setAttribute("role", "application");
   leaflet.setAttribute("aria-roledescription", "chart");
-  leaflet.setAttribute("aria-label", "Chart. Arrows move it, plus and minus enlarge it, Tab goes from vehicle to vehicle, Escape and Tab leave it.");
+  leaflet.setAttribute("aria-label", "Chart. Arrows move it, plus and minus enlarge it, J and K go from vehicle to vehicle.");
   leaflet.setAttribute("aria-describedby", words.id);
   tip.setAttribute("aria-hidden", "true"); // the summary has it
 }

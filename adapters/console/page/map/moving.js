@@ -18,8 +18,8 @@ const PRIORITY = { chosen: 0, vehicle: 1, named: 2, place: 3, fence: 4, target: 
 const MARKS = ["", "▲", "■", "✖"];
 
 /** Draw the moving layer; return the things that may be hit: {name, section, at, radius}. */
-export function drawMoving(pen, store, tracks, { now, chosen, hovered, slots, covered }) {
-  const things = inView(pen.view, store, now, chosen);
+export function drawMoving(pen, store, tracks, { now, chosen, hovered, slots, covered, hidden }) {
+  const things = inView(pen.view, store, now, chosen, hidden);
   for (const [name, chunk] of tracks.growing()) drawTrack(pen, [joined(chunk, store, name)], 1);
   for (const way of store.section("ways").values()) drawCorridor(pen, way);
   for (const invariant of store.section("invariants").values()) if (!invariant.holds) drawBreach(pen, invariant);
@@ -44,10 +44,11 @@ function joined(chunk, store, name) {
 
 // --- things in view --------------------------------------------------------------------------------------------
 
-function inView(view, store, now, chosen) {
+function inView(view, store, now, chosen, hidden) {
   const things = [];
   const vehicles = store.section("vehicles");
   for (const [name, entity] of store.section("entities")) {
+    if (hidden.has(name) && name !== chosen) continue;
     const at = view.point(entity.at);
     if (!view.sees(at, 60)) continue;
     const shape = shapeOf(entity);

@@ -42,8 +42,11 @@ const SHAPES = {
 
 export const TRIANGLE = [[0, -10], [5, 6], [-5, 6]];
 
+/** The shape of a kind of vehicles. */
+export const shapeOfKind = (kind) => BY_KIND.find(([pattern]) => pattern.test(kind ?? ""))?.[1] ?? "arrow";
+
 export function shapeOf({ kind, vehicle, course, source }) {
-  if (vehicle) return BY_KIND.find(([pattern]) => pattern.test(kind ?? ""))?.[1] ?? "arrow";
+  if (vehicle) return shapeOfKind(kind);
   return /^ais/i.test(source ?? "") || (course ?? null) !== null ? "target" : "diamond";
 }
 
