@@ -1,0 +1,198 @@
+/** The studio: a mission's text, its verdicts, its map and bigraph, and an explorer of its runs. */
+import { Field, html, kept, memo, render, useEffect, useRef, useWatched, Watched } from "/parts/ui.js";
+import { Connection } from "./connection.js";
+
+const PAUSE = 600; // milliseconds without a change before the text is checked
+
+const token = () => new URLSearchParams(location.hash.slice(1)).get("token") ?? "";
+
+class Studio {
+  connection = new Connection(token());
+  /** What the program sent of the mission's file, or of how a new one can begin; null before. */
+  opened = new Watched(null);
+  beginning = new Watched(null);
+  /** Whether the text differs from the file. */
+  unsaved = new Watched(false);
+  /** The text of the file where another program has saved it over a text that is not saved here. */
+  other = new Watched(null);
+  problem = new Watched("");
+  chosen = new Watched(null);
+  /** The number of the newest text that was sent to be checked. */
+  number = 0;
+  look = kept("look", "");
+  theme = new Watched("light");
+  editor = null;
+
+  constructor() {
+    const dark = matchMedia("(prefers-color-scheme: dark)");
+    const dress = () => this.theme.set(this.look.value || (dark.matches ? "dark" : "light"));
+    dark.addEventListener("change", dress);
+    this.look.on(dress);
+    this.theme.on((theme) => (document.documentElement.dataset.theme = theme));
+    dress();
+    document.documentElement.dataset.theme = this.theme.value;
+    this.chosen.on((name) => this.editor?.choose(name));
+    this.connection.connect({
+      start: (frame) => this.beginning.set(frame),
+      open: (frame) => this.#open(frame),
+      lsp: ({ message }) => this.hears?.(JSON.stringify(message)),
+      saved: ({ digest }) => this.#saved(digest),
+      changed: (frame) => this.#changed(frame),
+      error: ({ message }) => this.problem.set(message),
+    });
+    addEventListener("beforeunload", (event) => this.unsaved.value && event.preventDefault());
+    addEventListener("keydown", (event) => {
+      if (!(event.ctrlKey || event.metaKey) || event.key !== "s" || event.defaultPrevented) return;
+      event.preventDefault();
+      this.save();
+    });
+  }
+
+  begin = (name, source) => {
+    this.problem.set("");
+    this.connection.send("begin", { name, source });
+  };
+
+  #open(frame) {
+    this.digest = frame.digest;
+    this.inFile = frame.text;
+    document.title = `${frame.name}: bigactors studio`;
+    this.beginning.set(null);
+    this.problem.set("");
+    this.opened.set(frame);
+  }
+
+  async openEditor(element) {
+    const { Editor } = await import("./editor.js");
+    const lsp = {
+      send: (text) => this.connection.send("lsp", { message: JSON.parse(text) }),
+      subscribe: (hears) => (this.hears = hears),
+      unsubscribe: () => (this.hears = null),
+    };
+    const { text, uri, types, grammar } = this.opened.value;
+    this.editor = new Editor(element, { text, uri, types, grammar, lsp, changed: () => this.#edited(), named: (name) => this.chosen.set(name), save: () => this.save(), property: (mark) => this.pressed?.(mark) });
+    this.#send();
+  }
+
+  #edited() {
+    this.unsaved.set(this.editor.text !== this.inFile);
+    clearTimeout(this.pausing);
+    this.pausing = setTimeout(() => this.#send(), PAUSE);
+  }
+
+  /** Have the text checked and explored as it is now. */
+  #send() {
+    this.connection.send("text", { text: this.editor.text, number: ++this.number });
+  }
+
+  save = () => {
+    if (!this.editor) return;
+    this.saving = this.editor.text;
+    this.connection.send("save", { text: this.saving, over: this.digest });
+  };
+
+  #saved(digest) {
+    this.digest = digest;
+    this.inFile = this.saving;
+    this.problem.set("");
+    this.unsaved.set(this.editor.text !== this.inFile);
+  }
+
+  /** Take the text that another program has saved; ask where that would lose what was written here. */
+  #changed({ text, digest }) {
+    this.digest = digest;
+    this.inFile = text;
+    if (!this.editor) return;
+    if (this.unsaved.value && this.editor.text !== text) this.other.set(text);
+    else this.takeOther(text);
+  }
+
+  takeOther(text) {
+    this.other.set(null);
+    this.editor.replace(text);
+    this.unsaved.set(false);
+  }
+
+  keepMine() {
+    this.other.set(null);
+    this.unsaved.set(this.editor.text !== this.inFile);
+  }
+
+  otherTheme = () => this.look.set(this.theme.value === "dark" ? "light" : "dark");
+}
+
+function Page({ app }) {
+  const opened = useWatched(app.opened);
+  const beginning = useWatched(app.beginning);
+  return html`<div class="studio">
+    <${Top} app=${app} />
+    <${Trouble} app=${app} />
+    ${beginning && html`<${Begin} app=${app} ...${beginning} />`}
+    ${opened && html`<main>
+      <section class="text" aria-label="Text"><${EditorElement} app=${app} key=${opened.uri} /></section>
+    </main>`}
+  </div>`;
+}
+
+function Top({ app }) {
+  const opened = useWatched(app.opened);
+  const unsaved = useWatched(app.unsaved);
+  useWatched(app.theme);
+  return html`<header class="top">
+    <h1>${opened?.name ?? "bigactors studio"}</h1>
+    ${opened && html`<button type="button" class="save" disabled=${!unsaved} title="Ctrl-S" onClick=${app.save}>Save</button>
+      <span class=${unsaved ? "late" : "quiet"} role="status">${unsaved ? "not saved" : "saved"}</span>`}
+    <span class="space"></span>
+    <button type="button" class="icon" aria-label="light or dark" title="light or dark" onClick=${app.otherTheme}>◐</button>
+  </header>`;
+}
+
+/** What went wrong, in plain words, with what can be done about it. */
+function Trouble({ app }) {
+  const problem = useWatched(app.problem);
+  const other = useWatched(app.other);
+  const { state, code, reason } = useWatched(app.connection.state);
+  const closed = code === 4401 ? "This link's token is not that of the program: open the link that it printed." : reason || "The program has ended. Your text is still here: copy it before you close this page.";
+  return html`<div role="alert">
+    ${state === "closed" && html`<p class="trouble">${closed}</p>`}
+    ${other !== null && html`<p class="trouble">Another program has saved this file, and your text is not saved.
+      <button type="button" onClick=${() => app.takeOther(other)}>Take its text (Undo brings yours back)</button>
+      <button type="button" onClick=${() => app.keepMine()}>Keep mine</button></p>`}
+    ${problem && html`<p class="trouble">${problem} <button type="button" aria-label="close" onClick=${() => app.problem.set("")}>×</button></p>`}
+  </div>`;
+}
+
+/** How a mission begins that has no file yet. */
+function Begin({ app, name, source, shipped }) {
+  const begin = (event) => {
+    event.preventDefault();
+    const given = new FormData(event.target);
+    app.begin(given.get("name"), given.get("source"));
+  };
+  return html`<form class="begin" onSubmit=${begin}>
+    <h2>A new mission</h2>
+    <label>Name <${Field} name="name" value=${name || source} required=${true} maxlength="100" placeholder="patrol" /></label>
+    <label>Begin with <select name="source">
+      <option value="" selected=${!source}>the template: a small first mission with comments</option>
+      ${shipped.map((each) => html`<option key=${each} value=${each} selected=${each === source}>${each}, which ships</option>`)}
+    </select></label>
+    <button type="submit">Begin</button>
+    <p class="quiet">The file NAME.mission is written into the folder in which the program was started. To open another file: bigactors studio FILE.</p>
+  </form>`;
+}
+
+/** The editor's element, which preact draws once. */
+const EditorElement = memo(({ app }) => {
+  const element = useRef(null);
+  useEffect(() => {
+    app.openEditor(element.current).catch((problem) => app.problem.set(`There is no editor: ${problem.message}`));
+    return () => app.editor?.destroy();
+  }, []);
+  return html`<div class="editor" ref=${element}></div>`;
+});
+
+const app = new Studio();
+globalThis.studio = app; // for programs that drive this page
+const place = document.getElementById("app");
+place.replaceChildren();
+render(html`<${Page} app=${app} />`, place);

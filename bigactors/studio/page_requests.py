@@ -1,0 +1,63 @@
+"""The requests of the studio's page: frames of JSON, parsed and never evaluated."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Final
+
+from msgspec import Meta, Struct
+
+from adapters.typed_json import read_typed
+
+PROTOCOL: Final = "bigactors.studio/1"
+MOST_TEXT: Final = 1 << 20
+"""The most characters of a mission's text in the studio."""
+
+MOST_BYTES: Final = 8 << 20
+"""The most bytes of a frame."""
+
+MissionText = Annotated[str, Meta(max_length=MOST_TEXT)]
+Short = Annotated[str, Meta(max_length=200)]
+
+
+class LspFrame(Struct, frozen=True, tag_field="type", tag="lsp"):
+    """A message to the language server."""
+
+    message: dict[str, Any]
+
+
+class TextFrame(Struct, frozen=True, tag_field="type", tag="text"):
+    """The text as it is at a pause, with its number: what is known of an earlier text is out of date."""
+
+    text: MissionText
+    number: int
+
+
+class SaveFrame(Struct, frozen=True, tag_field="type", tag="save"):
+    """Save a text over the file with a digest; with the empty digest, over whatever is there."""
+
+    text: MissionText
+    over: Short
+
+
+class BeginFrame(Struct, frozen=True, tag_field="type", tag="begin"):
+    """Begin a mission with a name, from the text of a shipped mission, or from the template if that is empty."""
+
+    name: Short
+    source: Short
+
+
+class ExploreFrame(Struct, frozen=True, tag_field="type", tag="explore"):
+    """A request to the exploration of the newest text, with a number for its answer."""
+
+    id: int
+    request: dict[str, Any]
+
+
+Request = LspFrame | TextFrame | SaveFrame | BeginFrame | ExploreFrame
+
+
+def read_request(text: str) -> Request:
+    """Return the request in a frame; raises PhysicalError if it is none."""
+    said = text.encode(errors="surrogatepass")
+    request: Request = read_typed(said, MOST_BYTES, Request)  # type: ignore[arg-type]  # a union
+    return request

@@ -1,0 +1,230 @@
+"""One page of the studio: what it asks, and the processes that answer it."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Coroutine
+from contextlib import suppress
+from pathlib import Path
+from typing import Any, Final
+
+from bigactors.commands.check.file_changes import Looks, changed, look
+from bigactors.lsp.textmate import textmate_grammar
+from bigactors.lsp.tokens import TYPES
+from bigactors.mistakes import Mistake
+from bigactors.studio.child_process import ChildProcess
+from bigactors.studio.mission_file import Overwritten, Saved, begin_mission, read_mission, save_mission
+from bigactors.studio.page_requests import (
+    BeginFrame,
+    ExploreFrame,
+    LspFrame,
+    Request,
+    SaveFrame,
+    TextFrame,
+    read_request,
+)
+from physical import PhysicalError
+from specs.missions import shipped_missions
+
+MOST_CONFIGURATIONS: Final = 2_000_000
+MOST_SECONDS: Final = 600.0
+ANSWERED: Final = 30.0
+"""Seconds that an exploration has for one answer."""
+
+MOST_WAITING: Final = 16
+"""The most requests to an exploration that wait for the one before."""
+
+POLL: Final = 0.5
+"""Seconds between two looks at the file."""
+
+
+class Session:
+    """Answers one page until either side ends it.
+
+    Arguments:
+        socket: Its websocket.
+        file: The mission's file; it may not be there yet.
+    """
+
+    def __init__(self, socket: Any, file: Path) -> None:
+        self._socket = socket
+        self._file = file
+        self._seen: Looks = {}
+        self._known = ""
+        self._tasks: set[asyncio.Task[None]] = set()
+        self._lsp: ChildProcess | None = None
+        self._check: asyncio.Task[None] | None = None
+        self._explorer: ChildProcess | None = None
+        self._text: TextFrame | None = None
+        self._turn = asyncio.Lock()
+        self._waiting = 0
+
+    async def run(self) -> None:
+        """Greet the page and answer it; end its processes with it."""
+        try:
+            await self._greet()
+            self._begin(self._watch_file())
+            async for message in self._socket:
+                if isinstance(message.data, str):
+                    await self._hear(message.data)
+        finally:
+            for task in tuple(self._tasks):
+                task.cancel()
+            await asyncio.gather(*self._tasks, return_exceptions=True)
+            for child in (self._lsp, self._explorer):
+                if child is not None:
+                    child.kill()
+
+    async def _hear(self, frame: str) -> None:
+        try:
+            await self._answer(read_request(frame))
+        except PhysicalError as error:
+            await self._tell(f"this page sent what the studio cannot read: {error.message}")
+        except Mistake as mistake:
+            await self._tell(str(mistake))
+
+    async def _answer(self, request: Request) -> None:
+        match request:
+            case LspFrame(message):
+                if self._lsp is not None:
+                    await self._lsp.send_frame(message)
+            case TextFrame():
+                await self._take(request)
+            case SaveFrame(text, over):
+                await self._save(text, over)
+            case BeginFrame(name, source):
+                self._file = begin_mission(self._file.parent, name, source)
+                await self._open()
+            case ExploreFrame():
+                self._begin(self._explore(request))
+
+    async def _send(self, kind: str, **data: Any) -> None:
+        await self._socket.send_json({"type": kind, **data})
+
+    async def _tell(self, words: str) -> None:
+        await self._send("error", message=words)
+
+    def _begin(self, work: Coroutine[Any, Any, None]) -> asyncio.Task[None]:
+        task = asyncio.create_task(work)
+        self._tasks.add(task)
+        task.add_done_callback(self._tasks.discard)
+        return task
+
+    # --- the file
+
+    async def _greet(self) -> None:
+        if self._file.exists():
+            await self._open()
+        else:
+            stem, shipped = self._file.stem, shipped_missions()
+            name = "" if stem in shipped else stem
+            await self._send("start", name=name, source=stem if stem in shipped else "", shipped=[*shipped])
+
+    async def _open(self) -> None:
+        """Send the mission's text, with what an editor needs."""
+        saved = read_mission(self._file)
+        self._keep(saved)
+        if self._lsp is None:
+            self._lsp = await ChildProcess.start("bigactors", "lsp")
+            self._begin(self._relay(self._lsp))
+        file = self._file.resolve()
+        uri, name, types = file.as_uri(), file.name, [*TYPES]
+        grammar = textmate_grammar()
+        await self._send(
+            "open", text=saved.text, digest=saved.digest, name=name, uri=uri, types=types, grammar=grammar
+        )
+
+    async def _relay(self, server: ChildProcess) -> None:
+        async for message in server.frames():
+            await self._send("lsp", message=message)
+        await self._tell("the language server has ended: reload the page to have its help again")
+
+    async def _save(self, text: str, over: str) -> None:
+        try:
+            saved = save_mission(self._file, text, over)
+        except Overwritten:
+            await self._changed_outside()
+            return
+        self._keep(saved)
+        await self._send("saved", digest=saved.digest)
+
+    def _keep(self, saved: Saved) -> None:
+        self._known = saved.digest
+        self._seen = look([self._file])
+
+    async def _watch_file(self) -> None:
+        """Tell the page when another program has saved the file."""
+        while True:
+            await asyncio.sleep(POLL)
+            now = look([self._file], self._seen)
+            if changed(self._seen, now):
+                self._seen = now
+                with suppress(Mistake):  # it may be gone for the moment of its replacement
+                    await self._changed_outside()
+
+    async def _changed_outside(self) -> None:
+        saved = read_mission(self._file)
+        if saved.digest != self._known:
+            self._keep(saved)
+            await self._send("changed", text=saved.text, digest=saved.digest)
+
+    # --- the text as it is now
+
+    async def _take(self, text: TextFrame) -> None:
+        """Check and explore a text; end the check and the exploration of the text before."""
+        self._text = text
+        if self._check is not None:
+            self._check.cancel()
+        if self._explorer is not None:
+            self._explorer.kill()
+            self._explorer = None
+        self._check = self._begin(self._checked(text))
+
+    def _mission(self, text: TextFrame) -> dict[str, str]:
+        return {"name": self._file.name, "text": text.text, "directory": str(self._file.resolve().parent)}
+
+    async def _checked(self, text: TextFrame) -> None:
+        child = await ChildProcess.start("bigactors.lsp.worker")
+        limits = {"configurations": MOST_CONFIGURATIONS, "seconds": MOST_SECONDS}
+        found = await child.ask_once(self._mission(text) | limits)
+        failed = {"refused": "the check has ended without a report: more memory may be needed"}
+        await self._send("verdicts", number=text.number, **(failed if found is None else found))
+
+    async def _explore(self, request: ExploreFrame) -> None:
+        if self._waiting >= MOST_WAITING:
+            await self._send("explored", id=request.id, refused="too many requests wait for an answer")
+            return
+        self._waiting += 1
+        try:
+            async with self._turn:
+                found = await self._explored(request.request)
+        finally:
+            self._waiting -= 1
+        await self._send("explored", id=request.id, **found)
+
+    async def _explored(self, request: dict[str, Any]) -> dict[str, Any]:
+        """Return the answer of the exploration of the newest text; start it where there is none."""
+        text = self._text
+        if text is None:
+            return {"refused": "there is no text yet"}
+        if self._explorer is None:
+            child = self._explorer = await ChildProcess.start("bigactors.studio.exploring")
+            begun = await child.ask(self._mission(text))
+            if begun is None or "refused" in begun:
+                self._forget(child)
+                return begun or {"refused": "the text has changed"}
+        child = self._explorer
+        try:
+            async with asyncio.timeout(ANSWERED):
+                found = await child.ask(request)
+        except TimeoutError:
+            self._forget(child)
+            return {"refused": f"there was no answer within {ANSWERED:.0f} s: the exploration begins anew"}
+        if found is None:
+            self._forget(child)
+        return found or {"refused": "the text has changed"}
+
+    def _forget(self, child: ChildProcess) -> None:
+        child.kill()
+        if self._explorer is child:
+            self._explorer = None
