@@ -13,17 +13,17 @@ const PLAIN = new Set(["P", "PRE", "CODE", "EM", "STRONG", "UL", "OL", "LI", "BR
 
 /**
  * An editor in an element. It calls `changed()` after each change of the text, `named(name)` when the cursor enters a name,
- * and `save()` for the key of saving. `lsp` is the way to the language server: `{send, subscribe, unsubscribe}`.
+ * `save()` for the key of saving, and `pressed(mark)` for a mark in the margin that is pressed. `lsp` is the way to the language server: `{send, subscribe, unsubscribe}`.
  */
 export class Editor {
-  constructor(element, { text, uri, types, grammar, lsp, changed, named, save, property }) {
+  constructor(element, { text, uri, types, grammar, lsp, changed, named, save, pressed }) {
     this.types = types;
     this.uri = uri;
     this.options = { changed, named };
     this.client = new LSPClient({ timeout: 20_000, sanitizeHTML: plain, extensions: [serverCompletion(), hoverTooltips(), { notificationHandlers: { "textDocument/publishDiagnostics": (_, params) => this.#diagnose(params) } }] });
     this.client.connect(lsp);
     const keys = [{ key: "Mod-s", preventDefault: true, run: () => (save(), true) }, ...closeBracketsKeymap, ...lintKeymap, ...completionKeymap, ...formatKeymap, ...renameKeymap, ...jumpToDefinitionKeymap, ...findReferencesKeymap];
-    const view = [lineNumbers(), margin(property), lintGutter(), highlightSpecialChars(), drawSelection(), highlightActiveLine(), highlightActiveLineGutter(), bracketMatching(), LOOK, EditorView.lineWrapping];
+    const view = [lineNumbers(), margin(pressed), lintGutter(), highlightSpecialChars(), drawSelection(), highlightActiveLine(), highlightActiveLineGutter(), bracketMatching(), LOOK, EditorView.lineWrapping];
     const editing = [history(), indentOnInput(), closeBrackets(), autocompletion(), search({ top: true }), keymap.of([...keys, ...searchKeymap, ...historyKeymap, ...defaultKeymap, indentWithTab])];
     const about = EditorView.contentAttributes.of({ "aria-label": "The mission's text. Escape and Tab leave it.", spellcheck: "false" });
     const listening = EditorView.updateListener.of((update) => this.#hear(update));
@@ -175,14 +175,14 @@ class Sign extends GutterMarker {
   }
 }
 
-function margin(property) {
+function margin(pressed) {
   const at = (view, line) => view.state.field(marks).find((mark) => mark.at >= line.from && mark.at <= line.to);
   return [marks, gutter({
     class: "cm-margin",
     lineMarker: (view, line) => { const mark = at(view, line); return mark ? new Sign(mark) : null; },
     lineMarkerChange: (update) => update.state.field(marks) !== update.startState.field(marks),
     initialSpacer: () => new Sign({ sign: "✓", sort: "none", title: "" }),
-    domEventHandlers: { click: (view, line) => { const mark = at(view, line); if (mark) property(mark); return Boolean(mark); } },
+    domEventHandlers: { click: (view, line) => { const mark = at(view, line); if (mark) pressed(mark); return Boolean(mark); } },
   })];
 }
 
@@ -204,6 +204,7 @@ const LOOK = EditorView.theme({
   ".cm-textfield, .cm-button": { backgroundColor: "var(--surface)", backgroundImage: "none", color: "var(--ink)", border: "1px solid var(--line)" },
   ".cm-chosen-name": { backgroundColor: "color-mix(in srgb, var(--accent) 22%, transparent)", outline: "1px solid var(--accent)", borderRadius: "2px" },
   ".cm-name-class": { color: "var(--lane-4)" },
+  ".cm-name-enumMember, .cm-name-enumMember span": { color: "var(--ink)" },
   ".cm-name-type": { color: "var(--lane-3)" },
   ".cm-name-event": { color: "var(--lane-1)" },
   ".cm-margin .cm-gutterElement": { width: "16px", textAlign: "center", cursor: "default" },

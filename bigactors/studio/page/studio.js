@@ -1,6 +1,7 @@
 /** The studio: a mission's text, its verdicts, its map and bigraph, and an explorer of its runs. */
 import { Field, html, kept, memo, render, useEffect, useRef, useWatched, Watched } from "/parts/ui.js";
 import { Connection } from "./connection.js";
+import { marksOf, runOf, Verdicts } from "./verdicts.js";
 
 const PAUSE = 600; // milliseconds without a change before the text is checked
 
@@ -17,6 +18,10 @@ class Studio {
   other = new Watched(null);
   problem = new Watched("");
   chosen = new Watched(null);
+  /** The verdicts on the newest text, or on one before while it is checked: `{state, report, refused}`. */
+  verdicts = new Watched({ state: "none" });
+  /** The trace that the explorer is to show: the run of a verdict. */
+  run = new Watched(null);
   /** The number of the newest text that was sent to be checked. */
   number = 0;
   look = kept("look", "");
@@ -38,6 +43,7 @@ class Studio {
       lsp: ({ message }) => this.hears?.(JSON.stringify(message)),
       saved: ({ digest }) => this.#saved(digest),
       changed: (frame) => this.#changed(frame),
+      verdicts: (frame) => this.#judged(frame),
       error: ({ message }) => this.problem.set(message),
     });
     addEventListener("beforeunload", (event) => this.unsaved.value && event.preventDefault());
@@ -70,7 +76,7 @@ class Studio {
       unsubscribe: () => (this.hears = null),
     };
     const { text, uri, types, grammar } = this.opened.value;
-    this.editor = new Editor(element, { text, uri, types, grammar, lsp, changed: () => this.#edited(), named: (name) => this.chosen.set(name), save: () => this.save(), property: (mark) => this.pressed?.(mark) });
+    this.editor = new Editor(element, { text, uri, types, grammar, lsp, changed: () => this.#edited(), named: (name) => this.chosen.set(name), save: () => this.save(), pressed: ({ property }) => property && this.showRun(property) });
     this.#send();
   }
 
@@ -83,7 +89,21 @@ class Studio {
   /** Have the text checked and explored as it is now. */
   #send() {
     this.connection.send("text", { text: this.editor.text, number: ++this.number });
+    this.verdicts.set({ ...this.verdicts.value, state: "running" });
   }
+
+  #judged({ number, report, refused }) {
+    if (number !== this.number) return;
+    this.verdicts.set(report ? { state: "done", report } : { state: "refused", refused, report: this.verdicts.value.report });
+    if (report) this.editor.mark(marksOf(report));
+  }
+
+  /** Have the explorer show the run that proves a verdict. */
+  showRun = (name) => {
+    const found = this.verdicts.value.report?.properties.find((each) => each.name === name);
+    const trace = found && runOf(found);
+    if (trace) this.run.set({ ...trace });
+  };
 
   save = () => {
     if (!this.editor) return;
@@ -129,7 +149,7 @@ function Page({ app }) {
     <${Trouble} app=${app} />
     ${beginning && html`<${Begin} app=${app} ...${beginning} />`}
     ${opened && html`<main>
-      <section class="text" aria-label="Text"><${EditorElement} app=${app} key=${opened.uri} /></section>
+      <section class="text" aria-label="Text"><${EditorElement} app=${app} key=${opened.uri} /><${Verdicts} app=${app} /></section>
     </main>`}
   </div>`;
 }
