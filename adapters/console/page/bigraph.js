@@ -1,5 +1,5 @@
 /** The picture of L, which can be moved and enlarged, and its text form. */
-import { html, useEffect, useLayoutEffect, useRef, useSections, useState } from "./ui.js";
+import { html, useEffect, useLayoutEffect, useRef, useSections, useState, useWatched } from "./ui.js";
 
 const SVG = "http://www.w3.org/2000/svg";
 const ELEMENTS = new Set(["svg", "g", "path", "text", "tspan", "use", "defs", "clipPath", "rect", "circle", "ellipse", "line", "polygon", "polyline", "title"]);
@@ -49,6 +49,31 @@ function sizeOf(root) {
   return [0, 0, width, height];
 }
 
+/** The boxes of a picture's nodes by their names: the first text in a box, and in none within it. */
+function nodesOf(root) {
+  const boxes = [...root.querySelectorAll("rect")].map((rect) => ({ rect, at: rect.getBoundingClientRect() })).sort((a, b) => sizeOfBox(a) - sizeOfBox(b));
+  const found = new Map();
+  const taken = new Set();
+  for (const text of root.querySelectorAll("text")) {
+    const { left, right, top, bottom } = text.getBoundingClientRect();
+    const box = boxes.find(({ at }) => covers(at, (left + right) / 2, (top + bottom) / 2));
+    if (!box || taken.has(box)) continue;
+    taken.add(box);
+    found.set(text.textContent, box);
+  }
+  return found;
+}
+
+const sizeOfBox = ({ at }) => at.width * at.height;
+const covers = ({ left, right, top, bottom }, x, y) => left <= x && x <= right && top <= y && y <= bottom;
+
+/** The name of the smallest node at a point of the window that the map knows too, else null. */
+function nodeAt(root, x, y, store) {
+  const known = ([name]) => store.section("entities").has(name) || store.section("places").has(name);
+  const there = [...nodesOf(root)].filter(known).filter(([, { at }]) => covers(at, x, y));
+  return there.sort(([, a], [, b]) => sizeOfBox(a) - sizeOfBox(b))[0]?.[0] ?? null;
+}
+
 /** The caption with the picture's step, which may be earlier than the moment's: L is drawn at most once a second. */
 function captionOf(pictured, step) {
   if (pictured === null) return "the logical model";
@@ -62,6 +87,8 @@ export function Bigraph({ app }) {
   const frame = useRef(null);
   const view = useRef({ box: null, whole: null });
   const [words, setWords] = useState(false);
+  const chosen = useWatched(app.chosen);
+  const pressed = useRef(null);
 
   const show = () => frame.current?.firstElementChild?.setAttribute("viewBox", view.current.box.join(" "));
   const fit = () => {
@@ -95,6 +122,21 @@ export function Bigraph({ app }) {
     view.current = { whole: drawn.size, box: same ? view.current.box : [...drawn.size] };
     show();
   }, [svg, words]);
+
+  useLayoutEffect(() => {
+    const root = frame.current?.firstElementChild;
+    if (!root) return;
+    const mark = chosen === null ? null : nodesOf(root).get(chosen)?.rect;
+    for (const rect of root.querySelectorAll("rect")) rect.classList.toggle("chosen", rect === mark);
+  }, [svg, words, chosen]);
+
+  /** Choose the node that is pressed, unless the picture was moved. */
+  const press = ({ clientX, clientY }) => (pressed.current = [clientX, clientY]);
+  const choose = ({ clientX, clientY }) => {
+    const [x, y] = pressed.current ?? [NaN, NaN];
+    if (Math.hypot(clientX - x, clientY - y) > 4) return;
+    app.chosen.set(nodeAt(frame.current.firstElementChild, x, y, app.store));
+  };
 
   useEffect(() => {
     const element = frame.current;
@@ -132,6 +174,6 @@ export function Bigraph({ app }) {
     ${words || !svg
       ? html`<pre tabindex="0" key="text">${text}</pre>`
       : html`<div key="picture" class="frame" ref=${frame} tabindex="0" role="img" aria-label=${`The bigraph: ${text ?? "see the picture"}`} onPointerMove=${drag} onKeyDown=${keys}
-          onPointerDown=${(event) => event.currentTarget.setPointerCapture(event.pointerId)} onDblClick=${fit}></div>`}
+          onPointerDown=${(event) => (event.currentTarget.setPointerCapture(event.pointerId), press(event))} onClick=${choose} onDblClick=${fit}></div>`}
   </div>`;
 }

@@ -1,5 +1,7 @@
 /** The studio: a mission's text, its verdicts, its map and bigraph, and an explorer of its runs. */
 import { Field, html, kept, memo, render, useEffect, useRef, useWatched, Watched } from "/parts/ui.js";
+import { Bigraph } from "/parts/bigraph.js";
+import { Store } from "/parts/store.js";
 import { Connection } from "./connection.js";
 import { marksOf, runOf, Verdicts } from "./verdicts.js";
 
@@ -26,17 +28,26 @@ class Studio {
   number = 0;
   look = kept("look", "");
   theme = new Watched("light");
+  /** The configuration that is looked at, as the console's sections. */
+  store = new Store();
   editor = null;
+  map = null;
 
   constructor() {
     const dark = matchMedia("(prefers-color-scheme: dark)");
     const dress = () => this.theme.set(this.look.value || (dark.matches ? "dark" : "light"));
     dark.addEventListener("change", dress);
     this.look.on(dress);
-    this.theme.on((theme) => (document.documentElement.dataset.theme = theme));
+    this.theme.on((theme) => {
+      document.documentElement.dataset.theme = theme;
+      this.map?.setTheme(theme);
+    });
     dress();
     document.documentElement.dataset.theme = this.theme.value;
-    this.chosen.on((name) => this.editor?.choose(name));
+    this.chosen.on((name) => {
+      this.editor?.choose(name);
+      this.map?.choose(name);
+    });
     this.connection.connect({
       start: (frame) => this.beginning.set(frame),
       open: (frame) => this.#open(frame),
@@ -90,7 +101,27 @@ class Studio {
   #send() {
     this.connection.send("text", { text: this.editor.text, number: ++this.number });
     this.verdicts.set({ ...this.verdicts.value, state: "running" });
+    this.ask({ ask: "run", run: "" }).then(({ view }) => this.show(view), () => {}); // mistakes are shown by the editor
   }
+
+  /** Ask the exploration of the newest text. */
+  ask = (request) => this.connection.ask("explore", { request });
+
+  /** Show a configuration on the map and as a bigraph. */
+  show = (view) => this.store.apply({ type: "snapshot", state: view });
+
+  async openMap(element) {
+    const { createMap } = await import("/parts/map/map.js");
+    this.map = createMap(element, this.store, { select: (name) => this.chosen.set(name), fetchJson: this.#fetchJson, covers: () => document.querySelectorAll(".map-tools button") });
+    this.map.setTheme(this.theme.value);
+  }
+
+  /** Get JSON from the program that serves this page, with the token. */
+  #fetchJson = async (path) => {
+    const answer = await fetch(path, { headers: { Authorization: `Bearer ${token()}` } });
+    if (!answer.ok) throw new Error(`${path}: ${answer.status}`);
+    return answer.json();
+  };
 
   #judged({ number, report, refused }) {
     if (number !== this.number) return;
@@ -150,6 +181,8 @@ function Page({ app }) {
     ${beginning && html`<${Begin} app=${app} ...${beginning} />`}
     ${opened && html`<main>
       <section class="text" aria-label="Text"><${EditorElement} app=${app} key=${opened.uri} /><${Verdicts} app=${app} /></section>
+      <section class="map-area" aria-label="Map"><${MapElement} app=${app} /><${MapTools} app=${app} /></section>
+      <section class="picture" aria-label="Bigraph"><${Bigraph} app=${app} /></section>
     </main>`}
   </div>`;
 }
@@ -210,6 +243,24 @@ const EditorElement = memo(({ app }) => {
   }, []);
   return html`<div class="editor" ref=${element}></div>`;
 });
+
+/** The map's element, which preact draws once: the map itself draws its content. */
+const MapElement = memo(({ app }) => {
+  const element = useRef(null);
+  useEffect(() => {
+    app.openMap(element.current).catch((problem) => app.problem.set(`There is no map: ${problem.message}`));
+    return () => app.map?.destroy();
+  }, []);
+  return html`<div id="map" ref=${element}></div>`;
+});
+
+function MapTools({ app }) {
+  const chosen = useWatched(app.chosen);
+  return html`<div class="map-tools" role="toolbar" aria-label="Map">
+    <button type="button" title="show all places and entities" onClick=${() => app.map?.fit()}>Fit</button>
+    ${chosen !== null && html`<button type="button" class="chosen-name" title="choose nothing" onClick=${() => app.chosen.set(null)}>${chosen} ×</button>`}
+  </div>`;
+}
 
 const app = new Studio();
 globalThis.studio = app; // for programs that drive this page
