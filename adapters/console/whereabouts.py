@@ -110,7 +110,7 @@ def places(facts: Facts) -> dict[str, Json]:
     """Return the section `places`: entities with an area, and entities that never move."""
     found = dict(_sighted_places(facts))
     if facts.standing is not None:
-        found |= _places(facts.standing.change.after, facts.standing.rules.fixed, _vehicles(facts))
+        found |= places_of(facts.standing.change.after, facts.standing.rules.fixed, _vehicles(facts))
     return found
 
 
@@ -124,7 +124,8 @@ def _sighted_places(facts: Facts) -> Iterator[tuple[str, Json]]:
 
 
 @lru_cache(maxsize=256)
-def _places(c: Configuration, fixed: frozenset[Name], vehicles: frozenset[Name]) -> Mapping[str, Json]:
+def places_of(c: Configuration, fixed: frozenset[Name], vehicles: frozenset[Name]) -> Mapping[str, Json]:
+    """Return the section `places` of a configuration: entities with an area, and those that never move."""
     where = whereabouts(c)
     placed = ((name, c.structure.physical.placement(name)) for name in c.structure.physical.entities())
     return {
@@ -136,11 +137,12 @@ def _places(c: Configuration, fixed: frozenset[Name], vehicles: frozenset[Name])
 
 def _shape(kind: str, at: Placed) -> Shape:
     band = None if at.altitude is None else (at.altitude.low, at.altitude.high)
-    return Shape(kind, _degrees(at.geometry), band)
+    return Shape(kind, degrees(at.geometry), band)
 
 
 @lru_cache(maxsize=1 << 12)
-def _degrees(geometry: Geometry) -> tuple[Position, ...]:
+def degrees(geometry: Geometry) -> tuple[Position, ...]:
+    """Return the corners of a geometry in degrees."""
     return tuple((north / E7, east / E7) for north, east in geometry.ring)
 
 
@@ -166,20 +168,21 @@ def entities(facts: Facts, now: float, shown: Mapping[str, Json]) -> dict[str, J
     where, vehicles = known_whereabouts(facts), _vehicles(facts)
     named = facts.standing.rules.initial.setting.kinds if facts.standing is not None else {}
     found = {
-        name: _entity(seen, where.get(name, UNKNOWN), name in named, name in vehicles)
+        name: entity_of(seen, where.get(name, UNKNOWN), name in named, name in vehicles)
         for name, seen in facts.seen.items()
         if name not in shown and (seen.until >= now or name in named or name in vehicles)
     }
     for name, (kind, at) in _unheard(facts):
         if name not in shown and name not in found:
             silent = SeenEntity(kind, at, None, None, 0.0, 0.0, "", ())
-            entity = _entity(silent, where.get(name, UNKNOWN), name in named, name in vehicles)
+            entity = entity_of(silent, where.get(name, UNKNOWN), name in named, name in vehicles)
             found[name] = {**entity, "seen": None, "source": None}
     return found
 
 
 @lru_cache(maxsize=1 << 13)  # most entities have not moved since the last view
-def _entity(seen: SeenEntity, where: Whereabouts, named: bool, vehicle: bool) -> dict[str, Json]:
+def entity_of(seen: SeenEntity, where: Whereabouts, named: bool, vehicle: bool) -> dict[str, Json]:
+    """Return an entity of the section `entities`."""
     return {
         "kind": seen.kind,
         "at": seen.at,
@@ -198,11 +201,12 @@ def _entity(seen: SeenEntity, where: Whereabouts, named: bool, vehicle: bool) ->
 def _unheard(facts: Facts) -> Iterator[tuple[Name, tuple[str, Position]]]:
     """Yield the kind and the position of each entity that P places at a point; the caller drops the sighted ones."""
     if facts.standing is not None:
-        yield from _positions(facts.standing.change.after).items()
+        yield from positions_of(facts.standing.change.after).items()
 
 
 @lru_cache(maxsize=256)
-def _positions(c: Configuration) -> Mapping[Name, tuple[str, Position]]:
+def positions_of(c: Configuration) -> Mapping[Name, tuple[str, Position]]:
+    """Return the kind and the position of each entity that P places at a point."""
     found = {}
     for name in c.structure.physical.entities():
         at = c.structure.physical.position(name)

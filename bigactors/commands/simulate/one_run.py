@@ -65,11 +65,12 @@ class OneRun:
         """Return the possible transitions at any date."""
         return expand(self.at)
 
-    def choices(self) -> tuple[Choice, ...]:
-        """Return the possible next steps."""
+    def choices(self, at: int | None = None) -> tuple[Choice, ...]:
+        """Return the possible next steps, at the end or at an earlier configuration."""
+        at = len(self.taken) if at is None else at
         if self._dated:
-            return tuple(Choice(*offer) for offer in self._dated[-1].offers())
-        return tuple(map(Choice, self.expansion().transitions))
+            return tuple(Choice(*offer) for offer in self._dated[at].offers())
+        return tuple(map(Choice, expand(self.trace.configurations[at]).transitions))
 
     def take(self, choice: Choice, date: int | None = None) -> None:
         """Take a step; with times, at `date` or at the earliest date.

@@ -1,0 +1,93 @@
+"""The value of each property in one configuration."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from itertools import combinations
+from typing import TYPE_CHECKING, Any
+
+from checker.check import BY_LOOKING
+from checker.properties.findings import Collected
+from checker.properties.races import ControlRaces, StaleObservationRaces
+from semantics.properties.kinds import PropertyKind
+from semantics.properties.property import Property
+from semantics.properties.propositions import holds
+from semantics.state.configuration import Configuration, Transition
+from semantics.successors import Expansion
+
+if TYPE_CHECKING:
+    from bigactors.commands.simulate.one_run import Choice
+
+
+@dataclass(frozen=True, slots=True)
+class Here:
+    """One configuration of a run.
+
+    Attributes:
+        c: The configuration.
+        expansion: Its transitions.
+        choices: The steps that may be taken, with times the intervals in which they may be.
+        raced: Whether the last step to it was the last one of a stale-observation race.
+    """
+
+    c: Configuration
+    expansion: Expansion
+    choices: Sequence[Choice]
+    raced: bool
+
+
+def values_here(properties: Sequence[Property], here: Here) -> list[dict[str, Any]]:
+    """Return for each property whether it is true here, in words, and whether that is bad; None if it is about runs."""
+    found = []
+    for each in properties:
+        value, words = _value(each, here)
+        bad = value is False and (each.kind is PropertyKind.INVARIANT or _is_standard(each))
+        said = {"name": each.name, "kind": each.kind.value, "formula": each.written}
+        found.append(said | {"value": value, "words": words, "bad": bad})
+    return found
+
+
+def _is_standard(asked: Property) -> bool:
+    return asked.kind is PropertyKind.RACE_FREEDOM or asked.kind in BY_LOOKING
+
+
+def _value(asked: Property, here: Here) -> tuple[bool | None, str]:
+    if asked.is_of_runs or asked.kind is PropertyKind.ENDURANCE:
+        return None, "about whole runs"
+    if asked.kind is PropertyKind.RACE_FREEDOM:
+        value, words = _seen(_races(here))
+        return value and not here.raced, "the last step was a stale-observation race" if here.raced else words
+    if asked.kind in BY_LOOKING:
+        inspection = BY_LOOKING[asked.kind](1)
+        inspection(0, here.c, here.expansion)
+        return _seen([inspection.collected])
+    value = holds(asked.formula, here.c)
+    return value, "true here" if value else "not true here"
+
+
+def _seen(found: Sequence[Collected]) -> tuple[bool, str]:
+    messages = [finding.message for each in found for finding in each.first.values()]
+    return not messages, messages[0] if messages else "nothing against it here"
+
+
+def _races(here: Here) -> list[Collected]:
+    controls, stale = ControlRaces(1), StaleObservationRaces(1)
+    for enabled in _together(here):
+        controls(0, here.c, Expansion(enabled, ()))
+    labels = {each.transition.label for each in here.choices}
+    taken = tuple(each for each in here.expansion.by_agents if each.label in labels)
+    if here.c.setting.monitored:
+        stale(0, here.c, Expansion(taken, ()))
+    return [controls.collected, stale.collected]
+
+
+def _together(here: Here) -> Iterator[tuple[Transition, ...]]:
+    """Yield the steps that may be taken at one moment: with times, the pairs whose intervals overlap."""
+    if here.c.setting.timing is None:
+        yield here.expansion.enabled
+        return
+    for one, other in combinations(here.choices, 2):
+        begin = max(one.earliest or 0, other.earliest or 0)
+        if all(each.latest is None or begin <= each.latest for each in (one, other)):
+            yield one.transition, other.transition

@@ -1,0 +1,53 @@
+"""The causes of violations: who did what, and when, in plain sentences."""
+
+import pytest
+
+from checker import check
+from checker.reports.causes import causes_of
+from specs.elaboration import load_mission
+
+TOLD = [
+    (
+        "look_before_entry_racy",
+        "race_freedom",
+        {
+            7: "b on uav1 looks into gate0, and sees nobody",
+            8: "uav0 moves from north0 to gate0, as a wants",
+            12: "b acts on what it saw: uav1 moves from south0 to gate0",
+        },
+    ),
+    (
+        "broken_inconsistent",
+        "local_consistency",
+        {1: "pilot on uav0 asks for MOVE_HOST_TO west0", 2: "uav0 drifts to shore0"},
+    ),
+    (
+        "broken_control_race",
+        "race_freedom",
+        {1: "first on gcs0 asks for MOVE uav0 TO west0", 2: "second on gcs0 asks for MOVE uav0 TO east0"},
+    ),
+    (
+        "broken_deadlock",
+        "deadlock_freedom",
+        {
+            7: "corridor waits at a react",
+            11: "first waits at a react",
+            18: "pad waits at a react",
+            22: "second waits at a react",
+        },
+    ),
+    (
+        "broken_crossing",
+        "apart",
+        {2: "uav0 sets off for east0, as first wants", 4: "uav1 sets off for north0, as second wants"},
+    ),
+]
+
+
+@pytest.mark.parametrize(("mission", "name", "told"), TOLD, ids=[each[0] for each in TOLD])
+def test_a_violation_has_its_causes_in_the_order_of_the_run(mission, name, told):
+    verdict = check(load_mission(mission)).verdicts[name]
+    violation = verdict.violations[0]
+    formulas = (verdict.property.formula,)
+    found = {each.number: each.text for each in causes_of(violation.trace, violation, formulas)}
+    assert found == told
