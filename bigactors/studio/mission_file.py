@@ -3,15 +3,23 @@
 from __future__ import annotations
 
 import hashlib
+import re
+from base64 import b64decode
 from dataclasses import dataclass
 from pathlib import Path
 from shutil import copyfile
+from typing import Final
 
 from bigactors.commands.new import new_mission
 from bigactors.files import check_writable, read_bytes, write_text
 from bigactors.mistakes import Mistake, unreadable
 from bigactors.studio.page_requests import MOST_TEXT
+from physical import read_places
+from physical.place_files import PLACES
 from specs.missions import shipped_missions
+
+NAME: Final = re.compile(r"[^\W_][\w .-]{0,99}")
+"""The name of a dropped file: no path leads elsewhere, and no file is hidden."""
 
 
 class Overwritten(Exception):
@@ -86,6 +94,35 @@ def begin_mission(folder: Path, name: str, source: str) -> Path:
     except OSError as error:
         raise unreadable(str(path), error) from error
     return path
+
+
+def keep_places(folder: Path, name: str, content: str) -> str:
+    """Write a file of places, given in base 64, beside the mission; return its name.
+
+    Raises:
+        Mistake: Its name or its content is none of a file of places, or another file has its name.
+        PhysicalError: Its content cannot be read; it says where.
+    """
+    suffix = Path(name).suffix.lower()
+    if suffix not in PLACES or not NAME.fullmatch(name):
+        raise Mistake(f"'{name:.60}' is no file of places", f"drop a file that ends with {', '.join(PLACES)}")
+    try:
+        data = b64decode(content, validate=True)
+    except ValueError as error:
+        raise Mistake("the file has not arrived whole", "drop it again", name) from error
+    if not read_places(suffix, data):
+        raise Mistake("the file has no places", "a plan needs items with positions", name)
+    path = folder / name
+    try:
+        with path.open("xb") as file:
+            file.write(data)
+    except FileExistsError:
+        if read_bytes(str(path), len(data)) != data:
+            hint = "rename the file that you drop"
+            raise Mistake("another file beside the mission has this name", hint, name) from None
+    except OSError as error:
+        raise unreadable(str(path), error) from error
+    return name
 
 
 def _copy_companions(shipped: Path, folder: Path) -> None:

@@ -7,6 +7,7 @@ from typing import Annotated, Any, Final
 from msgspec import Meta, Struct
 
 from adapters.typed_json import read_typed
+from bigactors.studio.world_edits import Add, Reshape
 
 PROTOCOL: Final = "bigactors.studio/1"
 MOST_TEXT: Final = 1 << 20
@@ -53,7 +54,24 @@ class ExploreFrame(Struct, frozen=True, tag_field="type", tag="explore"):
     request: dict[str, Any]
 
 
-Request = LspFrame | TextFrame | SaveFrame | BeginFrame | ExploreFrame
+class WorldFrame(Struct, frozen=True, tag_field="type", tag="world"):
+    """What a text places on the map, and the changes of the text for an edit there."""
+
+    id: int
+    text: MissionText
+    edit: Reshape | Add | None = None
+
+
+class DropFrame(Struct, frozen=True, tag_field="type", tag="drop"):
+    """A file of places that is dropped on the map, in base 64."""
+
+    id: int
+    text: MissionText
+    name: Short
+    content: str
+
+
+Request = LspFrame | TextFrame | SaveFrame | BeginFrame | ExploreFrame | WorldFrame | DropFrame
 
 
 def read_request(text: str) -> Request:

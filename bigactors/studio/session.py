@@ -3,26 +3,38 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Coroutine
+from collections.abc import Callable, Coroutine, Iterable
 from contextlib import suppress
+from functools import partial
 from pathlib import Path
 from typing import Any, Final
 
-from bigactors.commands.check.file_changes import Looks, changed, look
+from bigactors.commands.check.file_changes import Looks, look
+from bigactors.lsp.edited_mission import Reading, reading_of
 from bigactors.lsp.textmate import textmate_grammar
 from bigactors.lsp.tokens import TYPES
 from bigactors.mistakes import Mistake
 from bigactors.studio.child_process import ChildProcess
-from bigactors.studio.mission_file import Overwritten, Saved, begin_mission, read_mission, save_mission
+from bigactors.studio.mission_file import (
+    Overwritten,
+    Saved,
+    begin_mission,
+    keep_places,
+    read_mission,
+    save_mission,
+)
 from bigactors.studio.page_requests import (
     BeginFrame,
+    DropFrame,
     ExploreFrame,
     LspFrame,
     Request,
     SaveFrame,
     TextFrame,
+    WorldFrame,
     read_request,
 )
+from bigactors.studio.world_edits import Add, Change, Reshape, Uneditable, changes, from_file, shapes
 from physical import PhysicalError
 from specs.missions import shipped_missions
 
@@ -97,6 +109,11 @@ class Session:
                 await self._open()
             case ExploreFrame():
                 self._begin(self._explore(request))
+            case WorldFrame(number, text, edit):
+                await self._change_world(number, partial(_edited, self._reading(text), edit))
+            case DropFrame(number, text, name, content):
+                file = partial(keep_places, self._file.resolve().parent, name, content)
+                await self._change_world(number, partial(_taken, self._reading(text), file))
 
     async def _send(self, kind: str, **data: Any) -> None:
         await self._socket.send_json({"type": kind, **data})
@@ -157,7 +174,7 @@ class Session:
         while True:
             await asyncio.sleep(POLL)
             now = look([self._file], self._seen)
-            if changed(self._seen, now):
+            if now != self._seen:
                 self._seen = now
                 with suppress(Mistake):  # it may be gone for the moment of its replacement
                     await self._changed_outside()
@@ -167,6 +184,17 @@ class Session:
         if saved.digest != self._known:
             self._keep(saved)
             await self._send("changed", text=saved.text, digest=saved.digest)
+
+    # --- the world, drawn on the map
+
+    def _reading(self, text: str) -> Reading:
+        return reading_of(self._file.name, text, self._file.resolve().parent)
+
+    async def _change_world(self, number: int, work: Callable[[], dict[str, Any]]) -> None:
+        try:
+            await self._send("world", id=number, answer=await asyncio.to_thread(work))
+        except (Uneditable, Mistake, PhysicalError) as error:
+            await self._send("world", id=number, refused=str(error))
 
     # --- the text as it is now
 
@@ -228,3 +256,25 @@ class Session:
         child.kill()
         if self._explorer is child:
             self._explorer = None
+
+
+def _edited(reading: Reading, edit: Reshape | Add | None) -> dict[str, Any]:
+    """Return what a text places, and the changes for an edit."""
+    if edit is None:
+        return shapes(reading)
+    name, found = changes(reading, edit)
+    return {"name": name, "changes": _changes_json(reading, found)}
+
+
+def _taken(reading: Reading, keep: Callable[[], str]) -> dict[str, Any]:
+    """Keep a dropped file; return the changes that take its places into the world."""
+    return {"changes": _changes_json(reading, from_file(reading, keep()))}
+
+
+def _changes_json(reading: Reading, found: Iterable[Change]) -> list[dict[str, Any]]:
+    """Return changes with the offsets of a browser, which counts in UTF-16."""
+
+    def offset(at: int) -> int:
+        return len(reading.text[:at].encode("utf-16-le", "surrogatepass")) // 2
+
+    return [{"from": offset(each.start), "to": offset(each.end), "insert": each.text} for each in found]

@@ -2,12 +2,17 @@
 import { Field, html, kept, memo, render, useEffect, useRef, useWatched, Watched } from "/parts/ui.js";
 import { Bigraph } from "/parts/bigraph.js";
 import { Store } from "/parts/store.js";
+import { Explorer } from "./explorer.js";
+import { DrawingTools, Handles } from "./map_editing.js";
 import { Connection } from "./connection.js";
 import { marksOf, runOf, Verdicts } from "./verdicts.js";
 
 const PAUSE = 600; // milliseconds without a change before the text is checked
 
-const token = () => new URLSearchParams(location.hash.slice(1)).get("token") ?? "";
+const MOST_FILE = 4_000_000; // bytes of a dropped file
+
+const fragment = () => new URLSearchParams(location.hash.slice(1));
+const token = () => fragment().get("token") ?? "";
 
 class Studio {
   connection = new Connection(token());
@@ -22,8 +27,14 @@ class Studio {
   chosen = new Watched(null);
   /** The verdicts on the newest text, or on one before while it is checked: `{state, report, refused}`. */
   verdicts = new Watched({ state: "none" });
-  /** The trace that the explorer is to show: the run of a verdict. */
-  run = new Watched(null);
+  /** What the explorer is to show: `{run, at}`, the steps of a run, or `{trace}`, the run of a verdict; null before a text. */
+  wanted = new Watched(null);
+  /** The run that the explorer shows; the address has it, so that a link or a reload comes back to it. */
+  shown = { run: fragment().get("run") ?? "", at: Number(fragment().get("at") ?? Number.NaN) };
+  /** Whether the chosen entity has handles on the map. */
+  drawing = new Watched(false);
+  /** The kinds of the text, and what it places: `{kinds, shapes}`. */
+  shapes = new Watched({ kinds: [], shapes: {} });
   /** The number of the newest text that was sent to be checked. */
   number = 0;
   look = kept("look", "");
@@ -47,7 +58,10 @@ class Studio {
     this.chosen.on((name) => {
       this.editor?.choose(name);
       this.map?.choose(name);
+      this.#handle();
     });
+    this.drawing.on((on) => (on ? this.#seeShapes() : this.#handle()));
+    this.shapes.on(() => this.#handle());
     this.connection.connect({
       start: (frame) => this.beginning.set(frame),
       open: (frame) => this.#open(frame),
@@ -101,11 +115,24 @@ class Studio {
   #send() {
     this.connection.send("text", { text: this.editor.text, number: ++this.number });
     this.verdicts.set({ ...this.verdicts.value, state: "running" });
-    this.ask({ ask: "run", run: "" }).then(({ view }) => this.show(view), () => {}); // mistakes are shown by the editor
+    const { run, at } = this.shown;
+    this.wanted.set(Number.isNaN(at) ? { run } : { run, at });
+    if (this.drawing.value) this.#seeShapes();
   }
 
-  /** Ask the exploration of the newest text. */
-  ask = (request) => this.connection.ask("explore", { request });
+  /** Ask the exploration of the newest text; where a run is none of it any more, show its beginning. */
+  ask = async (request) => {
+    const answer = await this.connection.ask("explore", { request });
+    const kept = request.ask === "run" && answer.error && request.run === this.shown.run && request.run !== "";
+    return kept ? this.connection.ask("explore", { request: { ask: "run", run: "" } }) : answer;
+  };
+
+  /** Show the configuration that the explorer looks at, and have the address name it. */
+  looked = ({ view, run, at }) => {
+    this.show(view);
+    this.shown = { run, at };
+    history.replaceState(null, "", `#${new URLSearchParams({ token: token(), ...(run ? { run, at } : {}) })}`);
+  };
 
   /** Show a configuration on the map and as a bigraph. */
   show = (view) => this.store.apply({ type: "snapshot", state: view });
@@ -114,7 +141,58 @@ class Studio {
     const { createMap } = await import("/parts/map/map.js");
     this.map = createMap(element, this.store, { select: (name) => this.chosen.set(name), fetchJson: this.#fetchJson, covers: () => document.querySelectorAll(".map-tools button") });
     this.map.setTheme(this.theme.value);
+    this.handles = new Handles(this.map.leaflet, (points, radius) => this.#edit({ edit: "reshape", name: this.chosen.value, points, radius }));
+    element.addEventListener("dragover", (event) => event.preventDefault());
+    element.addEventListener("drop", (event) => {
+      event.preventDefault();
+      this.drop(event.dataTransfer.files);
+    });
   }
+
+  // --- the world on the map
+
+  async #seeShapes() {
+    const { text } = this.editor;
+    const shapes = await this.connection.ask("world", { text }).catch(() => null);
+    if (shapes && text === this.editor.text) this.shapes.set(shapes);
+  }
+
+  #handle() {
+    const { value } = this.chosen;
+    this.handles?.show(value, this.drawing.value ? this.shapes.value.shapes[value] : null);
+  }
+
+  add = (kind, shape) => {
+    const { leaflet } = this.map;
+    const { lat, lng } = leaflet.getCenter();
+    const bounds = leaflet.getBounds();
+    this.#edit({ edit: "add", kind, shape, at: [lat, lng], size: leaflet.distance(bounds.getNorthWest(), bounds.getSouthEast()) / 8 });
+  };
+
+  /** Change the text as an edit on the map asks for. */
+  #edit = (edit) => this.#change("world", { edit });
+
+  async #change(type, frame) {
+    const { text } = this.editor;
+    try {
+      const { changes, name } = await this.connection.ask(type, { text, ...frame });
+      if (text !== this.editor.text) throw new Error("the text has changed meanwhile: try again");
+      if (changes.length) this.editor.edit(changes);
+      await this.#seeShapes();
+      if (name) this.chosen.set(name);
+    } catch (problem) {
+      this.problem.set(problem.message);
+      this.#handle();
+    }
+  }
+
+  /** Save dropped files of places beside the mission, and take them into the world. */
+  drop = async (files) => {
+    for (const file of files) {
+      if (file.size > MOST_FILE) this.problem.set(`${file.name} is over 4 MB: too large to be dropped here`);
+      else await this.#change("drop", { name: file.name, content: await base64(file) });
+    }
+  };
 
   /** Get JSON from the program that serves this page, with the token. */
   #fetchJson = async (path) => {
@@ -133,7 +211,7 @@ class Studio {
   showRun = (name) => {
     const found = this.verdicts.value.report?.properties.find((each) => each.name === name);
     const trace = found && runOf(found);
-    if (trace) this.run.set({ ...trace });
+    if (trace) this.wanted.set({ trace });
   };
 
   save = () => {
@@ -172,6 +250,14 @@ class Studio {
   otherTheme = () => this.look.set(this.theme.value === "dark" ? "light" : "dark");
 }
 
+/** A file's bytes in base 64. */
+async function base64(file) {
+  const bytes = new Uint8Array(await file.arrayBuffer());
+  let text = "";
+  for (let at = 0; at < bytes.length; at += 32_768) text += String.fromCharCode(...bytes.subarray(at, at + 32_768));
+  return btoa(text);
+}
+
 function Page({ app }) {
   const opened = useWatched(app.opened);
   const beginning = useWatched(app.beginning);
@@ -183,6 +269,7 @@ function Page({ app }) {
       <section class="text" aria-label="Text"><${EditorElement} app=${app} key=${opened.uri} /><${Verdicts} app=${app} /></section>
       <section class="map-area" aria-label="Map"><${MapElement} app=${app} /><${MapTools} app=${app} /></section>
       <section class="picture" aria-label="Bigraph"><${Bigraph} app=${app} /></section>
+      <section class="exploring" aria-label="Explorer"><${Exploring} app=${app} /></section>
     </main>`}
   </div>`;
 }
@@ -254,10 +341,16 @@ const MapElement = memo(({ app }) => {
   return html`<div id="map" ref=${element}></div>`;
 });
 
+function Exploring({ app }) {
+  const wanted = useWatched(app.wanted);
+  return wanted && html`<${Explorer} ask=${app.ask} state=${wanted} onLook=${app.looked} />`;
+}
+
 function MapTools({ app }) {
   const chosen = useWatched(app.chosen);
   return html`<div class="map-tools" role="toolbar" aria-label="Map">
     <button type="button" title="show all places and entities" onClick=${() => app.map?.fit()}>Fit</button>
+    <${DrawingTools} app=${app} />
     ${chosen !== null && html`<button type="button" class="chosen-name" title="choose nothing" onClick=${() => app.chosen.set(null)}>${chosen} ×</button>`}
   </div>`;
 }

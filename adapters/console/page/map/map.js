@@ -142,6 +142,11 @@ class Chart {
     return text;
   }
 
+  /** The Leaflet map, for what a page adds to it. */
+  get leaflet() {
+    return this.#surface.map;
+  }
+
   // --- for tests and screen readers ------------------------------------------------------------------------------
 
   /** The thing at a pixel of the map: {name, section}, or null. */
