@@ -57,8 +57,9 @@ class ExplorationError(ValueError):
 class Exploration:
     """An exploration of one mission by hand; a pure function of its requests, with a cache of the last run."""
 
-    def __init__(self, mission: ElaboratedMission) -> None:
+    def __init__(self, mission: ElaboratedMission, directory: Path | None = None) -> None:
         self.mission = mission
+        self._directory = Path(mission.source.name).parent if directory is None else directory
         initial = watching(mission.initial, mission.properties)
         races = any(each.kind is PropertyKind.RACE_FREEDOM for each in mission.properties)
         self.initial = monitored(initial) if races and not owned(initial) else initial
@@ -241,7 +242,7 @@ class Exploration:
                 raise ExplorationError("give one proposition, such as 'uav0 in gate0'")
         source = Source(self.mission.source.name, f"{self.mission.source.text}\n{asked}\n")
         variation = Variation(self.initial.setting.scheduler, self.initial.setting.control)
-        mission = elaborate(parse(source), source, Path(source.name).parent, variation)
+        mission = elaborate(parse(source), source, self._directory, variation)
         return next(each for each in mission.properties if each.name == GOAL)
 
     # --- traces and graphs ------------------------------------------------------------------------------------

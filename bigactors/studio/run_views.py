@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import lru_cache
+from functools import cache, lru_cache
 from typing import Any, Final
 
 from adapters.console.facts import SeenEntity
@@ -16,6 +16,7 @@ from checker.reports.lanes import LaneStep, Repetition, folded, lanes_of_trace
 from checker.reports.plain_steps import agent_words, step_words
 from physical import centroid
 from semantics.state.configuration import Configuration
+from semantics.state.differences import where_words
 from semantics.state.physical_model import InTransit
 from semantics.state.printing import print_agent
 from semantics.state.signature import REGION, Name
@@ -29,11 +30,12 @@ def run_json(trace: Trace, causes: Sequence[Cause] = ()) -> dict[str, Any]:
     rows = folded(lanes.steps)
     reasons = {cause.number: cause.text for cause in causes}
     pairs = zip(lanes.steps, trace.configurations, trace.configurations[1:], strict=False)
+    words = cache(step_words)  # a loop repeats its steps
     return {
         "lanes": lanes.names,
         "hosts": [agent_words(trace.initial, name) for name in lanes.names],
         "steps": [
-            _step_json(step, step_words(before, step.label, after), reasons.get(step.number))
+            _step_json(step, words(before, step.label, after), reasons.get(step.number))
             for step, before, after in pairs
         ],
         "folds": [[row.number, row.last, row.about] for row in rows if isinstance(row, Repetition)],
@@ -109,3 +111,10 @@ def _vehicle(c: Configuration, name: Name) -> dict[str, Any]:
     target = None if placement.to == REGION else physical.position(placement.to)
     way = [] if target is None else [degrees(centroid(target.geometry))[0]]
     return {"order": {"command": "GoTo", "to": placement.to, "state": "accepted", "way": way}}
+
+
+@lru_cache(maxsize=MOST_PICTURES)
+def places_text(c: Configuration) -> str:
+    """Return P as text: the place of each entity."""
+    physical = c.structure.physical
+    return "\n".join(f"{name}: {where_words(physical, name)}" for name in physical.entities())

@@ -18,6 +18,9 @@ from semantics.state.signature import Name
 MOST: Final = 4
 """The most causes of one trace."""
 
+OF_TIME: Final = frozenset({"late", "exhausted", "time stops"})
+"""The kinds of violations whose message is a plain sentence about the end of the run."""
+
 MOST_ATOMS: Final = 64
 MOST_STEPS: Final = 2_000
 """The longest run whose causes are sought."""
@@ -52,7 +55,8 @@ def causes_of(
     if violation.kind == "deadlock":
         return tuple(_waits(trace, violation))
     found = {*_requests(trace, violation.subject), *_flips(trace, formulas)} or {len(trace)}
-    return tuple(Cause(number, _words(trace, number)) for number in sorted(found)[-MOST:])
+    told = [Cause(number, _words(trace, number)) for number in sorted(found)[-MOST:]]
+    return (*told, Cause(len(trace), violation.message)) if violation.kind in OF_TIME else tuple(told)
 
 
 def _words(trace: Trace, number: int) -> str:

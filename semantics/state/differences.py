@@ -70,7 +70,7 @@ def _of_cell(before: Configuration, after: Configuration, cell: Cell) -> Iterato
         part = "L" if what == "links" else "P"
         yield from (Difference(part, whose, f"{whose} : {text}") for text in _joined(old or (), new or ()))
     elif what == "placement":
-        physical = (_where(c.structure.physical, whose) for c in (before, after))
+        physical = (where_words(c.structure.physical, whose) for c in (before, after))
         yield Difference("P", whose, f"{whose} : {' ↦ '.join(physical)}")
     elif what == "down":
         yield Difference("P", whose, f"{whose} {'drops' if new else 'returns'}")
@@ -129,7 +129,8 @@ def _place(c: Configuration, node: Name) -> str:
     return str(c.structure.logical.parent(node)) if node in c.structure.logical else "unknown"
 
 
-def _where(physical: PhysicalModel, name: Name) -> str:
+def where_words(physical: PhysicalModel, name: Name) -> str:
+    """Return the place of an entity in P in words."""
     placement = physical.placement(name)
     if placement is None:
         return "absent"

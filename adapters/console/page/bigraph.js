@@ -9,6 +9,8 @@ const ATTRIBUTES = new Set(["d", "x", "y", "x1", "x2", "y1", "y2", "dx", "dy", "
 /** A reference to something outside the picture. */
 const ELSEWHERE = /url\s*\((?!\s*['"]?#)/i;
 const LARGEST = 12;
+/** The least height in pixels of a picture's lettering. */
+const LEAST = 11;
 
 /**
  * Convert a picture to elements of this page: shapes and text only. Script sets its styles, since the page's policy refuses
@@ -67,11 +69,10 @@ function nodesOf(root) {
 const sizeOfBox = ({ at }) => at.width * at.height;
 const covers = ({ left, right, top, bottom }, x, y) => left <= x && x <= right && top <= y && y <= bottom;
 
-/** The name of the smallest node at a point of the window that the map knows too, else null. */
-function nodeAt(root, x, y, store) {
-  const known = ([name]) => store.section("entities").has(name) || store.section("places").has(name);
-  const there = [...nodesOf(root)].filter(known).filter(([, { at }]) => covers(at, x, y));
-  return there.sort(([, a], [, b]) => sizeOfBox(a) - sizeOfBox(b))[0]?.[0] ?? null;
+/** The names of the nodes at a point of the window, the smallest first. */
+function nodesAt(root, x, y) {
+  const there = [...nodesOf(root)].filter(([, { at }]) => covers(at, x, y));
+  return there.sort(([, a], [, b]) => sizeOfBox(a) - sizeOfBox(b)).map(([name]) => name);
 }
 
 /** The caption with the picture's step, which may be earlier than the moment's: L is drawn at most once a second. */
@@ -84,16 +85,31 @@ function captionOf(pictured, step) {
 export function Bigraph({ app }) {
   const [bigraph] = useSections(app.store, ["bigraph"], 200);
   const [svg, text, step, drawn] = ["svg", "text", "step", "drawn"].map((key) => bigraph.get(key) ?? null);
+  const chosen = useWatched(app.chosen);
+  const known = (name) => ["entities", "places"].some((section) => app.store.section(section).has(name));
+  return html`<${Drawing} svg=${svg} text=${text} called="The bigraph" chosen=${chosen} choose=${(names) => app.chosen.set(names.find(known) ?? null)} caption=${(words) => captionOf(words || !svg ? step : drawn, step)} />`;
+}
+
+/**
+ * A picture that can be moved and enlarged, and its text form. At first it is whole, unless its lettering (`lettering` high
+ * in its own units) would then be too small to read. The node named `chosen` is marked; `choose(names)` is called with the
+ * nodes at a point that is pressed, the smallest first.
+ */
+export function Drawing({ svg, text, called, caption, lettering = 0, chosen = null, choose = () => {} }) {
   const frame = useRef(null);
   const view = useRef({ box: null, whole: null });
   const [words, setWords] = useState(false);
-  const chosen = useWatched(app.chosen);
   const pressed = useRef(null);
 
   const show = () => frame.current?.firstElementChild?.setAttribute("viewBox", view.current.box.join(" "));
+  /** Show the whole picture, or its middle part if the lettering of the whole would be too small to read. */
   const fit = () => {
     if (!view.current.whole) return;
-    view.current.box = [...view.current.whole];
+    const [x, y, width, height] = view.current.whole;
+    const { clientWidth, clientHeight } = frame.current;
+    const scale = Math.min(clientWidth / width, clientHeight / height) || 1;
+    const part = Math.min(1, lettering ? (scale * lettering) / LEAST : 1);
+    view.current.box = [x + (width * (1 - part)) / 2, y + (height * (1 - part)) / 2, width * part, height * part];
     show();
   };
   /** Enlarge around a point, given in fractions of the frame. */
@@ -119,8 +135,9 @@ export function Bigraph({ app }) {
     if (!drawn) return;
     drawn.root.setAttribute("aria-hidden", "true"); // readers of the screen get the text
     const same = view.current.whole?.join() === drawn.size.join();
-    view.current = { whole: drawn.size, box: same ? view.current.box : [...drawn.size] };
-    show();
+    view.current = { whole: drawn.size, box: view.current.box };
+    if (same) show();
+    else fit();
   }, [svg, words]);
 
   useLayoutEffect(() => {
@@ -132,10 +149,9 @@ export function Bigraph({ app }) {
 
   /** Choose the node that is pressed, unless the picture was moved. */
   const press = ({ clientX, clientY }) => (pressed.current = [clientX, clientY]);
-  const choose = ({ clientX, clientY }) => {
+  const click = ({ clientX, clientY }) => {
     const [x, y] = pressed.current ?? [NaN, NaN];
-    if (Math.hypot(clientX - x, clientY - y) > 4) return;
-    app.chosen.set(nodeAt(frame.current.firstElementChild, x, y, app.store));
+    if (Math.hypot(clientX - x, clientY - y) <= 4) choose(nodesAt(frame.current.firstElementChild, x, y));
   };
 
   useEffect(() => {
@@ -170,10 +186,10 @@ export function Bigraph({ app }) {
       <button type="button" onClick=${() => zoom(0.8)} disabled=${words} aria-label="make smaller">−</button>
       <button type="button" onClick=${fit} disabled=${words}>Fit</button>
       <button type="button" aria-pressed=${String(words)} onClick=${() => setWords(!words)}>Text</button>
-      <span class="quiet">${captionOf(words || !svg ? step : drawn, step)}</span></p>
+      <span class="quiet">${caption(words)}</span></p>
     ${words || !svg
       ? html`<pre tabindex="0" key="text">${text}</pre>`
-      : html`<div key="picture" class="frame" ref=${frame} tabindex="0" role="img" aria-label=${`The bigraph: ${text ?? "see the picture"}`} onPointerMove=${drag} onKeyDown=${keys}
-          onPointerDown=${(event) => (event.currentTarget.setPointerCapture(event.pointerId), press(event))} onClick=${choose} onDblClick=${fit}></div>`}
+      : html`<div key="picture" class="frame" ref=${frame} tabindex="0" role="img" aria-label=${`${called}: ${text ?? "see the picture"}`} onPointerMove=${drag} onKeyDown=${keys}
+          onPointerDown=${(event) => (event.currentTarget.setPointerCapture(event.pointerId), press(event))} onClick=${click} onDblClick=${fit}></div>`}
   </div>`;
 }
