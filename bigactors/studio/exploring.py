@@ -9,12 +9,9 @@ from contextlib import redirect_stdout
 from pathlib import Path
 from typing import Any, TextIO
 
+from bigactors.lsp.edited_mission import reading_of
 from bigactors.mistakes import describe_bug
 from bigactors.studio.exploration import Exploration
-from specs import MissionError, Source
-from specs.diagnostics import render_all
-from specs.elaboration import diagnose
-from specs.parser import read
 
 
 def main() -> None:
@@ -27,25 +24,17 @@ def main() -> None:
 def answers(lines: TextIO) -> Iterator[dict[str, Any]]:
     """Yield the answer to each line: `answer`, or `refused` in words."""
     asked = json.loads(lines.readline())
-    source = Source(asked["name"], asked["text"])
-    try:
-        exploration = _exploration(source, Path(asked["directory"]))
-        yield {"answer": {}}
-    except MissionError as error:
-        yield {"refused": render_all(error.diagnostics, error.source)}
+    mission = reading_of(asked["name"], asked["text"], Path(asked["directory"])).diagnosis.elaborated
+    if mission is None:
+        yield {"refused": "the text has mistakes: what is shown is of a text without them"}
         return
+    exploration = Exploration(mission)
+    yield {"answer": {}}
     for line in lines:
         try:
             yield {"answer": exploration.handle(json.loads(line))}
         except Exception as error:  # the page shows it, and the exploration goes on
             yield {"refused": describe_bug(error)}
-
-
-def _exploration(source: Source, directory: Path) -> Exploration:
-    diagnosis = diagnose(read(source), source, directory)
-    if diagnosis.elaborated is None:
-        raise MissionError(source, diagnosis.mistakes)
-    return Exploration(diagnosis.elaborated)
 
 
 if __name__ == "__main__":

@@ -71,7 +71,13 @@ class DropFrame(Struct, frozen=True, tag_field="type", tag="drop"):
     content: str
 
 
-Request = LspFrame | TextFrame | SaveFrame | BeginFrame | ExploreFrame | WorldFrame | DropFrame
+class FlyFrame(Struct, frozen=True, tag_field="type", tag="fly"):
+    """Fly the mission's file with simulated vehicles."""
+
+    id: int
+
+
+Request = LspFrame | TextFrame | SaveFrame | BeginFrame | ExploreFrame | WorldFrame | DropFrame | FlyFrame
 
 
 def read_request(text: str) -> Request:

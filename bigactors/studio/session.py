@@ -15,6 +15,7 @@ from bigactors.lsp.textmate import textmate_grammar
 from bigactors.lsp.tokens import TYPES
 from bigactors.mistakes import Mistake
 from bigactors.studio.child_process import ChildProcess
+from bigactors.studio.flights import Flights
 from bigactors.studio.mission_file import (
     Overwritten,
     Saved,
@@ -27,6 +28,7 @@ from bigactors.studio.page_requests import (
     BeginFrame,
     DropFrame,
     ExploreFrame,
+    FlyFrame,
     LspFrame,
     Request,
     SaveFrame,
@@ -56,11 +58,13 @@ class Session:
     Arguments:
         socket: Its websocket.
         file: The mission's file; it may not be there yet.
+        flights: The flight of the studio.
     """
 
-    def __init__(self, socket: Any, file: Path) -> None:
+    def __init__(self, socket: Any, file: Path, flights: Flights) -> None:
         self._socket = socket
         self._file = file
+        self._flights = flights
         self._seen: Looks = {}
         self._known = ""
         self._tasks: set[asyncio.Task[None]] = set()
@@ -109,6 +113,8 @@ class Session:
                 await self._open()
             case ExploreFrame():
                 self._begin(self._explore(request))
+            case FlyFrame(number):
+                self._begin(self._fly(number))
             case WorldFrame(number, text, edit):
                 await self._change_world(number, partial(_edited, self._reading(text), edit))
             case DropFrame(number, text, name, content):
@@ -126,6 +132,12 @@ class Session:
         self._tasks.add(task)
         task.add_done_callback(self._tasks.discard)
         return task
+
+    async def _fly(self, number: int) -> None:
+        try:
+            await self._send("flying", id=number, answer=await self._flights.begin(self._file))
+        except Mistake as mistake:
+            await self._send("flying", id=number, refused=str(mistake))
 
     # --- the file
 
@@ -238,9 +250,9 @@ class Session:
         if self._explorer is None:
             child = self._explorer = await ChildProcess.start("bigactors.studio.exploring")
             begun = await child.ask(self._mission(text))
-            if begun is None or "refused" in begun:
+            if begun is None or "refused" in begun or self._text is not text:
                 self._forget(child)
-                return begun or {"refused": "the text has changed"}
+                return begun if begun and "refused" in begun else {"refused": "the text has changed"}
         child = self._explorer
         try:
             async with asyncio.timeout(ANSWERED):

@@ -3,6 +3,7 @@ import { Field, html, kept, memo, render, useEffect, useRef, useWatched, Watched
 import { Bigraph } from "/parts/bigraph.js";
 import { Store } from "/parts/store.js";
 import { Explorer } from "./explorer.js";
+import { Graph } from "./graph.js";
 import { DrawingTools, Handles } from "./map_editing.js";
 import { Connection } from "./connection.js";
 import { marksOf, runOf, Verdicts } from "./verdicts.js";
@@ -27,10 +28,12 @@ class Studio {
   chosen = new Watched(null);
   /** The verdicts on the newest text, or on one before while it is checked: `{state, report, refused}`. */
   verdicts = new Watched({ state: "none" });
+  /** The simulated flight: `{state, link}`. */
+  flight = new Watched({ state: "none" });
   /** What the explorer is to show: `{run, at}`, the steps of a run, or `{trace}`, the run of a verdict; null before a text. */
   wanted = new Watched(null);
   /** The run that the explorer shows; the address has it, so that a link or a reload comes back to it. */
-  shown = { run: fragment().get("run") ?? "", at: Number(fragment().get("at") ?? Number.NaN) };
+  shown = new Watched({ run: fragment().get("run") ?? "", at: Number(fragment().get("at") ?? 0) });
   /** Whether the chosen entity has handles on the map. */
   drawing = new Watched(false);
   /** The kinds of the text, and what it places: `{kinds, shapes}`. */
@@ -115,22 +118,21 @@ class Studio {
   #send() {
     this.connection.send("text", { text: this.editor.text, number: ++this.number });
     this.verdicts.set({ ...this.verdicts.value, state: "running" });
-    const { run, at } = this.shown;
-    this.wanted.set(Number.isNaN(at) ? { run } : { run, at });
+    this.wanted.set({ ...this.shown.value });
     if (this.drawing.value) this.#seeShapes();
   }
 
   /** Ask the exploration of the newest text; where a run is none of it any more, show its beginning. */
   ask = async (request) => {
     const answer = await this.connection.ask("explore", { request });
-    const kept = request.ask === "run" && answer.error && request.run === this.shown.run && request.run !== "";
+    const kept = request.ask === "run" && answer.error && request.run === this.shown.value.run && request.run !== "";
     return kept ? this.connection.ask("explore", { request: { ask: "run", run: "" } }) : answer;
   };
 
   /** Show the configuration that the explorer looks at, and have the address name it. */
   looked = ({ view, run, at }) => {
     this.show(view);
-    this.shown = { run, at };
+    this.shown.set({ run, at });
     history.replaceState(null, "", `#${new URLSearchParams({ token: token(), ...(run ? { run, at } : {}) })}`);
   };
 
@@ -206,6 +208,17 @@ class Studio {
     this.verdicts.set(report ? { state: "done", report } : { state: "refused", refused, report: this.verdicts.value.report });
     if (report) this.editor.mark(marksOf(report));
   }
+
+  /** Fly the mission's file with simulated vehicles; the console opens in a page of its own. */
+  fly = async () => {
+    this.flight.set({ state: "starting" });
+    try {
+      this.flight.set({ state: "flying", link: await this.connection.ask("fly", {}) });
+    } catch (problem) {
+      this.flight.set({ state: "none" });
+      this.problem.set(problem.message);
+    }
+  };
 
   /** Have the explorer show the run that proves a verdict. */
   showRun = (name) => {
@@ -283,8 +296,18 @@ function Top({ app }) {
     ${opened && html`<button type="button" class="save" disabled=${!unsaved} title="Ctrl-S" onClick=${app.save}>Save</button>
       <span class=${unsaved ? "late" : "quiet"} role="status">${unsaved ? "not saved" : "saved"}</span>`}
     <span class="space"></span>
+    ${opened && html`<${Flight} app=${app} unsaved=${unsaved} />`}
     <button type="button" class="icon" aria-label="light or dark" title="light or dark" onClick=${app.otherTheme}>◐</button>
   </header>`;
+}
+
+/** The way to a simulated flight: only of a saved text of which everything holds. */
+function Flight({ app, unsaved }) {
+  const { state, report } = useWatched(app.verdicts);
+  const flight = useWatched(app.flight);
+  const why = unsaved ? "Save the text first: the file is flown." : state !== "done" ? "The verdicts on this text are awaited." : report.exit_code !== 0 ? "Only a mission of which everything holds is flown." : "";
+  return html`${flight.state === "flying" && html`<a href=${flight.link} target="_blank" rel="noreferrer">Open the console of the flight</a>`}
+    <button type="button" class="fly" disabled=${why !== "" || flight.state === "starting"} title=${why || "with simulated vehicles, ten times as fast, in the operator's console"} onClick=${app.fly}>${flight.state === "starting" ? "Starting …" : "Fly"}</button>`;
 }
 
 /** What went wrong, in plain words, with what can be done about it. */
@@ -343,7 +366,9 @@ const MapElement = memo(({ app }) => {
 
 function Exploring({ app }) {
   const wanted = useWatched(app.wanted);
-  return wanted && html`<${Explorer} ask=${app.ask} state=${wanted} onLook=${app.looked} />`;
+  const { run, at } = useWatched(app.shown);
+  return wanted && html`<${Explorer} ask=${app.ask} state=${wanted} onLook=${app.looked} />
+    <${Graph} ask=${app.ask} run=${run} at=${at} onGo=${(there) => app.wanted.set({ run: there })} />`;
 }
 
 function MapTools({ app }) {
