@@ -7,7 +7,6 @@ from typing import Annotated, Any, Final
 from msgspec import Meta, Struct
 
 from adapters.typed_json import read_typed
-from bigactors.studio.world_edits import Add, Reshape
 
 PROTOCOL: Final = "bigactors.studio/1"
 MOST_TEXT: Final = 1 << 20
@@ -18,6 +17,14 @@ MOST_BYTES: Final = 8 << 20
 
 MissionText = Annotated[str, Meta(max_length=MOST_TEXT)]
 Short = Annotated[str, Meta(max_length=200)]
+
+
+MOST_CORNERS: Final = 1_000
+
+Latitude = Annotated[float, Meta(ge=-90, le=90)]
+Longitude = Annotated[float, Meta(ge=-180, le=180)]
+Position = tuple[Latitude, Longitude]
+Word = Annotated[str, Meta(min_length=1, max_length=200)]
 
 
 class LspFrame(Struct, frozen=True, tag_field="type", tag="lsp"):
@@ -52,6 +59,23 @@ class ExploreFrame(Struct, frozen=True, tag_field="type", tag="explore"):
 
     id: int
     request: dict[str, Any]
+
+
+class Reshape(Struct, frozen=True, tag_field="edit", tag="reshape"):
+    """Give an entity other points, and a circle another radius in metres."""
+
+    name: Word
+    points: Annotated[tuple[Position, ...], Meta(min_length=1, max_length=MOST_CORNERS)]
+    radius: Annotated[float, Meta(gt=0, le=1e7)] | None = None
+
+
+class Add(Struct, frozen=True, tag_field="edit", tag="add"):
+    """Add an entity of a kind: its shape is about `size` metres across."""
+
+    kind: Word
+    shape: Annotated[str, Meta(pattern="^(point|circle|box|polygon)$")]
+    at: Position
+    size: Annotated[float, Meta(gt=0, le=1e7)]
 
 
 class WorldFrame(Struct, frozen=True, tag_field="type", tag="world"):

@@ -15,7 +15,7 @@ from bigactors.lsp.textmate import textmate_grammar
 from bigactors.lsp.tokens import TYPES
 from bigactors.mistakes import Mistake
 from bigactors.studio.child_process import ChildProcess
-from bigactors.studio.flights import Flights
+from bigactors.studio.flight_process import FlightProcess
 from bigactors.studio.mission_file import (
     Overwritten,
     Saved,
@@ -25,18 +25,20 @@ from bigactors.studio.mission_file import (
     save_mission,
 )
 from bigactors.studio.page_requests import (
+    Add,
     BeginFrame,
     DropFrame,
     ExploreFrame,
     FlyFrame,
     LspFrame,
     Request,
+    Reshape,
     SaveFrame,
     TextFrame,
     WorldFrame,
     read_request,
 )
-from bigactors.studio.world_edits import Add, Change, Reshape, Uneditable, changes, from_file, shapes
+from bigactors.studio.world_edits import TextChange, Uneditable, changes, from_file, shapes
 from physical import PhysicalError
 from specs.missions import shipped_missions
 
@@ -58,13 +60,13 @@ class Session:
     Arguments:
         socket: Its websocket.
         file: The mission's file; it may not be there yet.
-        flights: The flight of the studio.
+        flight: The flight of the studio.
     """
 
-    def __init__(self, socket: Any, file: Path, flights: Flights) -> None:
+    def __init__(self, socket: Any, file: Path, flight: FlightProcess) -> None:
         self._socket = socket
         self._file = file
-        self._flights = flights
+        self._flight = flight
         self._seen: Looks = {}
         self._known = ""
         self._tasks: set[asyncio.Task[None]] = set()
@@ -135,7 +137,7 @@ class Session:
 
     async def _fly(self, number: int) -> None:
         try:
-            await self._send("flying", id=number, answer=await self._flights.begin(self._file))
+            await self._send("flying", id=number, answer=await self._flight.begin(self._file))
         except Mistake as mistake:
             await self._send("flying", id=number, refused=str(mistake))
 
@@ -283,7 +285,7 @@ def _taken(reading: Reading, keep: Callable[[], str]) -> dict[str, Any]:
     return {"changes": _changes_json(reading, from_file(reading, keep()))}
 
 
-def _changes_json(reading: Reading, found: Iterable[Change]) -> list[dict[str, Any]]:
+def _changes_json(reading: Reading, found: Iterable[TextChange]) -> list[dict[str, Any]]:
     """Return changes with the offsets of a browser, which counts in UTF-16."""
 
     def offset(at: int) -> int:

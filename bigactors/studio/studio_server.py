@@ -7,7 +7,7 @@ from typing import Any, Final
 
 from adapters.console.access import Access, Role
 from adapters.console.console_server import PAGE, PageService, Site
-from bigactors.studio.flights import Flights
+from bigactors.studio.flight_process import FlightProcess
 from bigactors.studio.page_requests import MOST_BYTES, PROTOCOL
 from bigactors.studio.session import Session
 
@@ -32,7 +32,7 @@ class StudioService(PageService):
     def __init__(self, access: Access, site: Site, file: Path) -> None:
         super().__init__(access, site, {"studio": STUDIO_PAGE, "parts": PAGE}, MOST_BYTES)
         self._file = file
-        self._flights = Flights()
+        self._flight = FlightProcess()
         self._pages = 0
 
     async def talk(self, socket: Any, role: Role, name: str) -> None:
@@ -43,11 +43,11 @@ class StudioService(PageService):
             return
         self._pages += 1
         try:
-            await Session(socket, self._file, self._flights).run()
+            await Session(socket, self._file, self._flight).run()
         finally:
             self._pages -= 1
 
     async def close(self) -> None:
         """Close all pages, and end the flight."""
         await super().close()
-        await self._flights.end()
+        await self._flight.end()

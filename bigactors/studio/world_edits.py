@@ -6,11 +6,10 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import count
 from math import cos, radians
-from typing import Annotated, Any, Final
-
-from msgspec import Meta, Struct
+from typing import Any, Final
 
 from bigactors.lsp.edited_mission import Reading
+from bigactors.studio.page_requests import Add, Position, Reshape
 from specs import syntax as s
 from specs.standard_signature import standard_kinds
 
@@ -20,37 +19,13 @@ DIGITS: Final = 5
 DEGREE: Final = 111_195.0
 """Metres in a degree of latitude."""
 
-MOST_CORNERS: Final = 1_000
-
-Latitude = Annotated[float, Meta(ge=-90, le=90)]
-Longitude = Annotated[float, Meta(ge=-180, le=180)]
-Position = tuple[Latitude, Longitude]
-Word = Annotated[str, Meta(min_length=1, max_length=200)]
-
 
 class Uneditable(Exception):
     """An edit that cannot be made; the message says why."""
 
 
-class Reshape(Struct, frozen=True, tag_field="edit", tag="reshape"):
-    """Give an entity other points, and a circle another radius in metres."""
-
-    name: Word
-    points: Annotated[tuple[Position, ...], Meta(min_length=1, max_length=MOST_CORNERS)]
-    radius: Annotated[float, Meta(gt=0, le=1e7)] | None = None
-
-
-class Add(Struct, frozen=True, tag_field="edit", tag="add"):
-    """Add an entity of a kind: its shape is about `size` metres across."""
-
-    kind: Word
-    shape: Annotated[str, Meta(pattern="^(point|circle|box|polygon)$")]
-    at: Position
-    size: Annotated[float, Meta(gt=0, le=1e7)]
-
-
 @dataclass(frozen=True, slots=True)
-class Change:
+class TextChange:
     """A replacement of the text between two offsets."""
 
     start: int
@@ -73,14 +48,14 @@ def _shape_json(geometry: s.Geometry) -> dict[str, Any]:
     return {"shape": type(geometry).__name__.lower(), "points": points, "radius": radius}
 
 
-def changes(reading: Reading, edit: Reshape | Add) -> tuple[str, list[Change]]:
+def changes(reading: Reading, edit: Reshape | Add) -> tuple[str, list[TextChange]]:
     """Return the name of the entity that is edited, and the changes of the text; raises Uneditable."""
     if isinstance(edit, Add):
         return _added(reading, edit)
     return edit.name, list(_reshaped(reading, edit))
 
 
-def _reshaped(reading: Reading, edit: Reshape) -> Iterator[Change]:
+def _reshaped(reading: Reading, edit: Reshape) -> Iterator[TextChange]:
     found = next((each for each in _entities(reading) if each.name.text == edit.name), None)
     if found is None or found.placement is None:
         raise Uneditable(f"the text places no {edit.name}: it comes from a file, is carried, or absent")
@@ -90,12 +65,12 @@ def _reshaped(reading: Reading, edit: Reshape) -> Iterator[Change]:
         raise Uneditable(f"{edit.name} has {len(points)} points in the text")
     for point, to in zip(points, edit.points, strict=True):
         if (point.latitude, point.longitude) != to:
-            yield Change(point.span.start, point.span.end, _position(to))
+            yield TextChange(point.span.start, point.span.end, _position(to))
     if isinstance(geometry, s.Circle) and edit.radius is not None and edit.radius != geometry.radius.metres:
-        yield Change(geometry.radius.span.start, geometry.radius.span.end, _length(edit.radius))
+        yield TextChange(geometry.radius.span.start, geometry.radius.span.end, _length(edit.radius))
 
 
-def _added(reading: Reading, edit: Add) -> tuple[str, list[Change]]:
+def _added(reading: Reading, edit: Add) -> tuple[str, list[TextChange]]:
     if edit.kind not in _kinds(reading):
         raise Uneditable(f"the signature has no kind {edit.kind}")
     name = _free_name(reading, edit.kind)
@@ -103,23 +78,23 @@ def _added(reading: Reading, edit: Add) -> tuple[str, list[Change]]:
     return name, [_inserted(reading, line)]
 
 
-def from_file(reading: Reading, file: str) -> list[Change]:
+def from_file(reading: Reading, file: str) -> list[TextChange]:
     """Return the change that takes the places of a file beside the mission into the world, unless it is there."""
     worlds = reading.mission.each(s.World)
     known = [each.file.value for world in worlds for each in world.entries if isinstance(each, s.FromSource)]
     return [] if file in known else [_inserted(reading, f'  from "{file}"\n')]
 
 
-def _inserted(reading: Reading, line: str) -> Change:
+def _inserted(reading: Reading, line: str) -> TextChange:
     """Return the change that adds a line at the end of the world; a text without a world gets one."""
     world = next(iter(reading.mission.each(s.World)), None)
     if world is None:
         at = len(reading.text)
-        return Change(at, at, f"\nworld {{\n{line}}}\n")
+        return TextChange(at, at, f"\nworld {{\n{line}}}\n")
     end = reading.text.rindex("}", world.span.start, world.span.end)
     begins = reading.text.rfind("\n", 0, end) + 1
     at, text = (end, f"\n{line}") if reading.text[begins:end].strip() else (begins, line)
-    return Change(at, at, text)
+    return TextChange(at, at, text)
 
 
 def _new_shape(edit: Add) -> str:

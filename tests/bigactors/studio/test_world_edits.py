@@ -5,7 +5,8 @@ from pathlib import Path
 import pytest
 
 from bigactors.lsp.edited_mission import reading_of
-from bigactors.studio.world_edits import Add, Reshape, Uneditable, changes, from_file, shapes
+from bigactors.studio.page_requests import Add, Reshape
+from bigactors.studio.world_edits import Uneditable, changes, from_file, shapes
 
 TEXT = """\
 mission m

@@ -19,7 +19,7 @@ MOST_LINES: Final = 20
 """The lines of a flight that does not begin which are shown."""
 
 
-class Flights:
+class FlightProcess:
     """Starts the flight of a mission, and ends it."""
 
     def __init__(self) -> None:
