@@ -35,6 +35,20 @@ class ChildProcess:
         with contextlib.suppress(ProcessLookupError):
             self._process.kill()
 
+    @property
+    def has_ended(self) -> bool:
+        """Whether the process has ended."""
+        return self._process.returncode is not None
+
+    async def end(self) -> None:
+        """End the process, and wait until nothing of it is left."""
+        self.kill()
+        assert self._process.stdin is not None
+        self._process.stdin.close()
+        await self._process.wait()
+        while await self._output.read(1 << 20):
+            pass
+
     async def ask_once(self, question: Any) -> Any:
         """Return the value that the process prints after it has read a question; None if it fails."""
         try:

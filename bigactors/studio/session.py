@@ -70,6 +70,7 @@ class Session:
         self._seen: Looks = {}
         self._known = ""
         self._tasks: set[asyncio.Task[None]] = set()
+        self._children: list[ChildProcess] = []
         self._lsp: ChildProcess | None = None
         self._check: asyncio.Task[None] | None = None
         self._explorer: ChildProcess | None = None
@@ -89,9 +90,7 @@ class Session:
             for task in tuple(self._tasks):
                 task.cancel()
             await asyncio.gather(*self._tasks, return_exceptions=True)
-            for child in (self._lsp, self._explorer):
-                if child is not None:
-                    child.kill()
+            await asyncio.gather(*(child.end() for child in self._children))
 
     async def _hear(self, frame: str) -> None:
         try:
@@ -129,6 +128,12 @@ class Session:
     async def _tell(self, words: str) -> None:
         await self._send("error", message=words)
 
+    async def _start(self, *module: str) -> ChildProcess:
+        """Start a process that ends with the page."""
+        child = await ChildProcess.start(*module)
+        self._children = [*(each for each in self._children if not each.has_ended), child]
+        return child
+
     def _begin(self, work: Coroutine[Any, Any, None]) -> asyncio.Task[None]:
         task = asyncio.create_task(work)
         self._tasks.add(task)
@@ -156,7 +161,7 @@ class Session:
         saved = read_mission(self._file)
         self._keep(saved)
         if self._lsp is None:
-            self._lsp = await ChildProcess.start("bigactors", "lsp")
+            self._lsp = await self._start("bigactors", "lsp")
             self._begin(self._relay(self._lsp))
         file = self._file.resolve()
         uri, name, types = file.as_uri(), file.name, [*TYPES]
@@ -226,7 +231,7 @@ class Session:
         return {"name": self._file.name, "text": text.text, "directory": str(self._file.resolve().parent)}
 
     async def _checked(self, text: TextFrame) -> None:
-        child = await ChildProcess.start("bigactors.lsp.worker")
+        child = await self._start("bigactors.lsp.worker")
         limits = {"configurations": MOST_CONFIGURATIONS, "seconds": MOST_SECONDS}
         found = await child.ask_once(self._mission(text) | limits)
         failed = {"refused": "the check has ended without a report: more memory may be needed"}
@@ -250,7 +255,7 @@ class Session:
         if text is None:
             return {"refused": "there is no text yet"}
         if self._explorer is None:
-            child = self._explorer = await ChildProcess.start("bigactors.studio.exploring")
+            child = self._explorer = await self._start("bigactors.studio.exploring")
             begun = await child.ask(self._mission(text))
             if begun is None or "refused" in begun or self._text is not text:
                 self._forget(child)
