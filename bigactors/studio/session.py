@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 from collections.abc import Callable, Coroutine, Iterable
 from contextlib import suppress
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import Any, Final
@@ -54,19 +55,25 @@ POLL: Final = 0.5
 """Seconds between two looks at the file."""
 
 
-class Session:
-    """Answers one page until either side ends it.
+@dataclass
+class Desk:
+    """What all pages of a studio share.
 
-    Arguments:
-        socket: Its websocket.
+    Attributes:
         file: The mission's file; it may not be there yet.
-        flight: The flight of the studio.
+        flight: The simulated flight.
     """
 
-    def __init__(self, socket: Any, file: Path, flight: FlightProcess) -> None:
+    file: Path
+    flight: FlightProcess
+
+
+class Session:
+    """Answers one page until either side ends it."""
+
+    def __init__(self, socket: Any, desk: Desk) -> None:
         self._socket = socket
-        self._file = file
-        self._flight = flight
+        self._desk = desk
         self._seen: Looks = {}
         self._known = ""
         self._tasks: set[asyncio.Task[None]] = set()
@@ -110,7 +117,7 @@ class Session:
             case SaveFrame(text, over):
                 await self._save(text, over)
             case BeginFrame(name, source):
-                self._file = begin_mission(self._file.parent, name, source)
+                self._desk.file = begin_mission(self._file.parent, name, source)
                 await self._open()
             case ExploreFrame():
                 self._begin(self._explore(request))
@@ -128,6 +135,10 @@ class Session:
     async def _tell(self, words: str) -> None:
         await self._send("error", message=words)
 
+    @property
+    def _file(self) -> Path:
+        return self._desk.file
+
     async def _start(self, *module: str) -> ChildProcess:
         """Start a process that ends with the page."""
         child = await ChildProcess.start(*module)
@@ -142,7 +153,7 @@ class Session:
 
     async def _fly(self, number: int) -> None:
         try:
-            await self._send("flying", id=number, answer=await self._flight.begin(self._file))
+            await self._send("flying", id=number, answer=await self._desk.flight.begin(self._file))
         except Mistake as mistake:
             await self._send("flying", id=number, refused=str(mistake))
 

@@ -9,7 +9,7 @@ from adapters.console.access import Access, Role
 from adapters.console.console_server import PAGE, PageService, Site
 from bigactors.studio.flight_process import FlightProcess
 from bigactors.studio.page_requests import MOST_BYTES, PROTOCOL
-from bigactors.studio.session import Session
+from bigactors.studio.session import Desk, Session
 
 STUDIO_PAGE: Final = Path(__file__).with_name("page")
 NEEDED: Final = "parts/codemirror.js"
@@ -31,8 +31,7 @@ class StudioService(PageService):
 
     def __init__(self, access: Access, site: Site, file: Path) -> None:
         super().__init__(access, site, {"studio": STUDIO_PAGE, "parts": PAGE}, MOST_BYTES)
-        self._file = file
-        self._flight = FlightProcess()
+        self._desk = Desk(file, FlightProcess())
         self._pages = 0
 
     async def talk(self, socket: Any, role: Role, name: str) -> None:
@@ -43,11 +42,11 @@ class StudioService(PageService):
             return
         self._pages += 1
         try:
-            await Session(socket, self._file, self._flight).run()
+            await Session(socket, self._desk).run()
         finally:
             self._pages -= 1
 
     async def close(self) -> None:
         """Close all pages, and end the flight."""
         await super().close()
-        await self._flight.end()
+        await self._desk.flight.end()

@@ -228,7 +228,7 @@ class Studio {
   };
 
   save = () => {
-    if (!this.editor) return;
+    if (!this.editor || this.other.value !== null) return; // the page asks which text is kept
     this.saving = this.editor.text;
     this.connection.send("save", { text: this.saving, over: this.digest });
   };
