@@ -64,10 +64,12 @@ def _reshaped(reading: Reading, edit: Reshape) -> Iterator[TextChange]:
     if len(points) != len(edit.points):
         raise Uneditable(f"{edit.name} has {len(points)} points in the text")
     for point, to in zip(points, edit.points, strict=True):
-        if (point.latitude, point.longitude) != to:
+        if _position((point.latitude, point.longitude)) != _position(to):
             yield TextChange(point.span.start, point.span.end, _position(to))
-    if isinstance(geometry, s.Circle) and edit.radius is not None and edit.radius != geometry.radius.metres:
-        yield TextChange(geometry.radius.span.start, geometry.radius.span.end, _length(edit.radius))
+    if isinstance(geometry, s.Circle) and edit.radius is not None:
+        before, after = geometry.radius, _length(edit.radius)
+        if _length(before.metres) != after:
+            yield TextChange(before.span.start, before.span.end, after)
 
 
 def _added(reading: Reading, edit: Add) -> tuple[str, list[TextChange]]:

@@ -7,6 +7,7 @@ import {
 import { missionLanguage, names, namesOf, setChosen, setNames } from "./highlighting.js";
 
 const SETTLES = 250; // milliseconds without a change before the language server reads the text
+const PATIENCE = 60_000; // milliseconds for an answer of the language server, which starts with the page
 const MOST_FIXED = 30; // diagnostics that are asked for quick fixes
 const SEVERITIES = { 1: "error", 2: "warning", 3: "info", 4: "hint" };
 const PLAIN = new Set(["P", "PRE", "CODE", "EM", "STRONG", "UL", "OL", "LI", "BR", "HR", "SPAN", "TABLE", "THEAD", "TBODY", "TR", "TH", "TD", "H1", "H2", "H3", "H4"]);
@@ -20,7 +21,7 @@ export class Editor {
     this.types = types;
     this.uri = uri;
     this.options = { changed, named };
-    this.client = new LSPClient({ timeout: 20_000, sanitizeHTML: plain, extensions: [serverCompletion(), hoverTooltips(), { notificationHandlers: { "textDocument/publishDiagnostics": (_, params) => this.#diagnose(params) } }] });
+    this.client = new LSPClient({ timeout: PATIENCE, sanitizeHTML: plain, extensions: [serverCompletion(), hoverTooltips(), { notificationHandlers: { "textDocument/publishDiagnostics": (_, params) => this.#diagnose(params) } }] });
     this.client.connect(lsp);
     const keys = [{ key: "Mod-s", preventDefault: true, run: () => (save(), true) }, ...closeBracketsKeymap, ...lintKeymap, ...completionKeymap, ...formatKeymap, ...renameKeymap, ...jumpToDefinitionKeymap, ...findReferencesKeymap];
     const view = [lineNumbers(), margin(pressed), lintGutter(), highlightSpecialChars(), drawSelection(), highlightActiveLine(), highlightActiveLineGutter(), bracketMatching(), LOOK, EditorView.lineWrapping];
@@ -98,12 +99,17 @@ export class Editor {
   #nameSoon(pause) {
     clearTimeout(this.naming);
     this.naming = setTimeout(async () => {
-      await this.client.initializing;
-      this.client.sync();
+      const found = await this.#tokens().catch(() => null); // the page says when the server has ended
       const { doc } = this.view.state;
-      const found = await this.client.request("textDocument/semanticTokens/full", { textDocument: { uri: this.uri } }).catch(() => null);
-      if (found && doc === this.view.state.doc) this.view.dispatch({ effects: setNames.of(namesOf(found, this.types, doc)) });
+      if (found?.doc === doc) this.view.dispatch({ effects: setNames.of(namesOf(found.tokens, this.types, doc)) });
     }, pause);
+  }
+
+  async #tokens() {
+    await this.client.initializing;
+    this.client.sync();
+    const { doc } = this.view.state;
+    return { doc, tokens: await this.client.request("textDocument/semanticTokens/full", { textDocument: { uri: this.uri } }) };
   }
 
   /** Show diagnostics, each with the quick fixes that the server has for it. */

@@ -67,8 +67,7 @@ export class Handles {
       if (!by) return;
       event.preventDefault();
       event.stopPropagation();
-      const [x, y] = by;
-      const { lat, lng } = this.map.containerPointToLatLng(this.map.latLngToContainerPoint(marker.getLatLng()).add([x, y]));
+      const { lat, lng } = this.map.unproject(this.map.project(marker.getLatLng()).add(by));
       done([lat, lng]);
     });
     if (part === this.#focused) element.focus();
@@ -100,8 +99,8 @@ export function DrawingTools({ app }) {
   const [shape, setShape] = useState("circle");
   const taken = kinds.includes(kind) ? kind : kinds[0] ?? "";
   return html`<button type="button" aria-pressed=${String(drawing)} title="move and resize the chosen entity; the text changes with it" onClick=${() => app.drawing.set(!drawing)}>Draw</button>
-    ${drawing && html`<select aria-label="kind" value=${taken} onChange=${(event) => setKind(event.currentTarget.value)}>${kinds.map((each) => html`<option key=${each}>${each}</option>`)}</select>
-      <select aria-label="shape" value=${shape} onChange=${(event) => setShape(event.currentTarget.value)}>${SHAPES.map((each) => html`<option key=${each}>${each}</option>`)}</select>
+    ${drawing && html`<select aria-label="kind" value=${taken} onChange=${(event) => setKind(event.currentTarget.value)}>${kinds.map((each) => html`<option key=${each} value=${each}>${each}</option>`)}</select>
+      <select aria-label="shape" value=${shape} onChange=${(event) => setShape(event.currentTarget.value)}>${SHAPES.map((each) => html`<option key=${each} value=${each}>${each}</option>`)}</select>
       <button type="button" disabled=${!taken} title="in the middle of the map" onClick=${() => app.add(taken, shape)}>Add</button>
       <label class="button">Take a file<input class="unseen" type="file" accept=${FILES} onChange=${(event) => { app.drop(event.currentTarget.files); event.currentTarget.value = ""; }} /></label>`}`;
 }
