@@ -10,6 +10,7 @@ from bigactors.pages import MOST_PICTURES, Story, trace_page
 from bigactors.picture_files import draw_run
 from bigactors.pictures import RegionMarks, marks_of
 from checker import Trace, print_trace, to_json
+from checker.reports.causes import Cause, causes_of
 from semantics.properties.kinds import PropertyKind
 from semantics.state.printing import print_configuration
 
@@ -25,6 +26,8 @@ class Evidence:
         trace: Its steps.
         violated: Whether it ends in a violation.
         telling: Whether each configuration is drawn: the trace ends in a violation, or in a wanted configuration.
+        headline: The description in plain words.
+        causes: The causes of the violation.
         details: More lines of the description.
         marks: The regions that the property is about.
     """
@@ -35,6 +38,8 @@ class Evidence:
     trace: Trace
     violated: bool
     telling: bool
+    headline: str
+    causes: tuple[Cause, ...] = ()
     details: tuple[str, ...] = ()
     marks: RegionMarks | None = None
 
@@ -44,6 +49,9 @@ def evidence_of(checked: Checked) -> Iterator[Evidence]:
     initial = checked.mission.initial
     for verdict in checked.report.verdicts:
         name = verdict.property.name
+        formulas = tuple(
+            each for each in (verdict.property.formula, verdict.property.then) if each is not None
+        )
         for violation in verdict.violations:
             about = f"{name} violated: {violation.kind}: {violation.message}"
             yield Evidence(
@@ -53,6 +61,8 @@ def evidence_of(checked: Checked) -> Iterator[Evidence]:
                 violation.trace,
                 True,
                 telling=True,
+                headline=f"{name} is violated: {verdict.property.written or violation.kind}",
+                causes=causes_of(violation.trace, violation, formulas),
                 details=violation.told,
                 marks=marks_of(
                     initial, violation.trace.configurations[-1], [verdict.property], violated=True
@@ -64,7 +74,8 @@ def evidence_of(checked: Checked) -> Iterator[Evidence]:
             last = verdict.witness.configurations[-1]
             marks = marks_of(initial, last, [verdict.property], violated=False)
             about = f"{name}: a witness"
-            yield Evidence(name, stem, about, verdict.witness, False, telling=found, marks=marks)
+            headline = f"{name}: a run to a case that it is about"
+            yield Evidence(name, stem, about, verdict.witness, False, found, headline, marks=marks)
 
 
 def write_evidence(checked: Checked, folder: Path) -> tuple[Path, ...]:
@@ -87,18 +98,17 @@ def write_evidence(checked: Checked, folder: Path) -> tuple[Path, ...]:
 
 def story_of(checked: Checked, evidence: Evidence) -> Story:
     """Return the contents of a trace's page."""
-    drawn = MOST_PICTURES if evidence.telling else 1
-    note = f"{checked.name}, {checked.digest}"
-    name = checked.mission.name
     return Story(
-        name,
-        evidence.about,
+        checked.mission.name,
+        evidence.headline,
         evidence.violated,
         evidence.trace,
-        drawn=drawn,
-        note=note,
-        details=evidence.details,
+        len(evidence.trace) if evidence.violated else 0,
+        evidence.causes,
+        drawn=MOST_PICTURES if evidence.telling else 1,
+        notes=(evidence.about, *evidence.details, f"{checked.name}, {checked.digest}"),
         marks=evidence.marks,
+        properties=checked.mission.properties,
     )
 
 

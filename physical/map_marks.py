@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from physical.map_labels import Box, Spot
-from physical.map_style import COAST, FAINT, HALO, INK, LAND, MARK, QUIET, Outline
+from physical.map_style import COAST, FAINT, HALO, INK, LAND, MARK, QUIET, SMALL, Outline
 from physical.svg import Canvas, Paint, Words, text_width
 
 RADIUS: Final = 5.5
@@ -173,7 +173,7 @@ def draw_scale(canvas: Canvas, box: Box, length: float, text: str, note: str = "
     canvas.line([(left, y + 3), (left, y), (right, y), (right, y + 3)], SCALE, TEXT)
     words = Words(7.5, INK, anchor="middle", halo=True)
     canvas.text(((left + right) / 2, y + 6.3), text, words, TEXT)
-    canvas.text((right, box.bottom + 1.4), note, Words(6.0, QUIET, anchor="end", halo=True), TEXT)
+    canvas.text((right, box.bottom + 1.4), note, Words(SMALL, QUIET, anchor="end", halo=True), TEXT)
     arrow = [(x, y + 12.0), (x + 3.6, y - 0.5), (x, y + 2.2), (x - 3.6, y - 0.5)]
     canvas.polygon(arrow, Paint(INK), TEXT)
     canvas.text((x, y + 13.8), "N", words, TEXT)

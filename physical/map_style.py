@@ -6,6 +6,9 @@ import math
 from collections.abc import Iterable
 from typing import Final
 
+SMALL: Final = 7.5
+"""The size of the smallest lettering, in points."""
+
 INK: Final = "#1f2933"
 QUIET: Final = "#66727f"
 FAINT: Final = "#dde5ec"

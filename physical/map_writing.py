@@ -28,7 +28,7 @@ from physical.map_marks import (
 )
 from physical.map_region_drawing import draw_spans, span_boxes
 from physical.map_scene import Scene, Sheet, area_of
-from physical.map_style import INK, QUIET, darker
+from physical.map_style import INK, QUIET, SMALL, darker
 from physical.map_view import bounds, scale_length
 from physical.outliers import apart
 from physical.svg import Canvas, shortened, text_width
@@ -121,7 +121,7 @@ def _note(
         return ()
     room = scene.sheet.width - 24.0
     wrapped = _wrapped(words, scene.sheet.width / 2)
-    lines = [Line(shortened(line, room, 7.0), 7.0, ink=QUIET) for line in wrapped]
+    lines = [Line(shortened(line, room, SMALL), SMALL, ink=QUIET) for line in wrapped]
     return ((_corner(scene.sheet, block_size(lines), taken), lines, names),)
 
 
@@ -133,7 +133,7 @@ def _wrapped(words: Sequence[str], width: float) -> list[str]:
     lines = [words[0]]
     for word in words[1:]:
         longer = f"{lines[-1]} {word}"
-        if text_width(longer, 7.0) <= width:
+        if text_width(longer, SMALL) <= width:
             lines[-1] = longer
         else:
             lines.append(word)
@@ -167,18 +167,18 @@ def _block(scene: Scene, name: str) -> list[Line]:
         return [Line(f"{entity.kind} ×{len(scene.members[name])}", bold=True)]
     lines = [Line(name, ink=darker(scene.colour(name)) if entity.place else INK)]
     if entity.towards is not None:
-        lines.append(Line(f"→ {entity.towards}", 7.0, ink=QUIET))
+        lines.append(Line(f"→ {entity.towards}", SMALL, ink=QUIET))
     if name in scene.far and entity.geometry is not None:
         near = (scene.entities[each].geometry for each in scene.near())
         metres = apart(entity.geometry, filter(None, near))
-        lines.append(Line(f"{metres_text(metres)} away", 7.0, ink=QUIET))
+        lines.append(Line(f"{metres_text(metres)} away", SMALL, ink=QUIET))
     cargo = scene.cargo(name)
     for depth, each in cargo[:MOST_CARRIED]:
         icon = (scene.shape(each), scene.colour(each))
         looks = {"lit": each in scene.highlight, "marked": each in scene.marked}
-        lines.append(Line(each, 7.0, ink=QUIET, indent=8.0 * depth, icon=icon, **looks))
+        lines.append(Line(each, SMALL, ink=QUIET, indent=8.0 * depth, icon=icon, **looks))
     if len(cargo) > MOST_CARRIED:
-        lines.append(Line(f"and {len(cargo) - MOST_CARRIED} more", 7.0, ink=QUIET, indent=9.0))
+        lines.append(Line(f"and {len(cargo) - MOST_CARRIED} more", SMALL, ink=QUIET, indent=9.0))
     return lines
 
 

@@ -31,6 +31,7 @@ CLASSES = {
     "a public name, beside another room's name for its own thing": {
         "Command": "bigactors/arguments semantics/behaviours",
         "Control": "bigraphs semantics/state",
+        "Exploration": "bigactors/studio checker/engines",
         "Finding": "adapters/live checker/properties",
         "Limits": "adapters/simulated checker",
         "Match": "bigraphs semantics/behaviours semantics/behaviours",
@@ -80,6 +81,7 @@ MODULES = {
     },
     "the same job for another room's values": {
         "drawing": "bigraphs physical",
+        "exploration": "bigactors/studio bigraphs",
         "geometry": "physical specs/elaboration",
     },
 }

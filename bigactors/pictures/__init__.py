@@ -3,7 +3,7 @@
 Beliefs, the actual world and changes come from `semantics`; nothing is decided here.
 """
 
-from bigactors.pictures.configuration_picture import Look, draw_configuration, look_of, way_entries
+from bigactors.pictures.configuration_picture import Look, draw_configuration, legend_picture, look_of
 from bigactors.pictures.panels import Panel, Panels, logical_picture
 from bigactors.pictures.region_marks import RegionMarks, marks_of
 from bigactors.pictures.scene import channels_of, shown_names
@@ -18,9 +18,9 @@ __all__ = [
     "draw_configuration",
     "draw_overview",
     "draw_trace",
+    "legend_picture",
     "logical_picture",
     "look_of",
     "marks_of",
     "shown_names",
-    "way_entries",
 ]

@@ -41,6 +41,8 @@ LARGEST: Final = 1.2
 ROW: Final = 15.0
 MOST_ROWS: Final = 12
 LEGEND_ROW: Final = 17.0
+LEGEND_WIDTH: Final = 280.0
+"""The width of a legend alone."""
 
 WAYS: Final = {
     "region": Paint("#dfe3e7", QUIET, 0.9),
@@ -200,13 +202,23 @@ def way_entries(ways: MapWays) -> list[tuple[str, str]]:
     ]
 
 
-def _legend_rows(entries: list[LegendEntry]) -> list[list[tuple[float, LegendEntry]]]:
+def legend_picture(c: Configuration, before: Configuration | None, marks: RegionMarks | None = None) -> str:
+    """Return the legend of a configuration alone, as an SVG."""
+    look = look_of(c, before, marks)
+    rows = _legend_rows(_entries(c, look), LEGEND_WIDTH)
+    page = Page(LEGEND_WIDTH, len(rows) * LEGEND_ROW + 8.0)
+    for rank, row in enumerate(rows):
+        _draw_legend_row(page, c, row, 16.0 + rank * LEGEND_ROW)
+    return page.picture("legend").svg
+
+
+def _legend_rows(entries: list[LegendEntry], wide: float = WIDTH) -> list[list[tuple[float, LegendEntry]]]:
     """Return the entries in rows, each with its left edge."""
     rows: list[list[tuple[float, LegendEntry]]] = [[]]
     x = MARGIN
     for entry in entries:
         width = 20.0 + text_width(entry.name, 8.0)
-        if rows[-1] and x + width > WIDTH - MARGIN:
+        if rows[-1] and x + width > wide - MARGIN:
             rows.append([])
             x = MARGIN
         rows[-1].append((x, entry))

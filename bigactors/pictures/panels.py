@@ -14,7 +14,7 @@ from physical.shape import Geometry
 from physical.svg import Picture
 from semantics.state.configuration import Configuration
 
-MAP: Final = (600.0, 400.0)
+MAP: Final = (440.0, 240.0)
 INSET: Final = 6.0
 """The free space above the map and to its right."""
 

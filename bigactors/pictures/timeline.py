@@ -1,4 +1,4 @@
-"""Draw a schedule of all flights over all runs as a Gantt chart; time goes to the right.
+"""Draw a schedule of all flights and messages over all runs as a Gantt chart; time goes to the right.
 
 Each flight is a bar from its earliest beginning to its latest end. The bar is full while the vehicle is under way in
 every run with that flight: from the latest beginning to the earliest end. A bar without a latest end reaches the right
@@ -12,7 +12,7 @@ from typing import Final
 
 from bigactors.pictures.page import Page
 from checker.properties.critical_path import interval_text
-from checker.properties.schedule import EventDates, Milestone, PossibleFlight, Schedule
+from checker.properties.schedule import EventDates, MessageDates, Milestone, PossibleFlight, Schedule
 from physical.map_style import QUIET
 from physical.svg import Paint, Picture, text_width
 
@@ -25,6 +25,7 @@ LEAST_NAMES: Final = 90.0
 MOST_NAMES: Final = 240.0
 
 FLIGHT: Final = ("#d5e5f8", "#4f86c6")
+MESSAGE: Final = ("#fbe9d3", "#d08a3c")
 TRUE: Final = ("#d6f0df", "#3f8f60")
 
 STEPS: Final = (1, 2, 5, 10, 15, 30, 60, 120, 300, 600, 900, 1800, 3600, 7200, 14_400, 43_200, 86_400)
@@ -83,10 +84,12 @@ def draw_timeline(schedule: Schedule, *, title: str) -> Picture:
 
 
 def groups_of(schedule: Schedule) -> Iterator[tuple[str, tuple[Bar, ...]]]:
-    """Yield the bars of each vehicle, then those of the `time` properties."""
+    """Yield the bars of each vehicle, then those of messages and of the `time` properties."""
     for vehicle in sorted({each.vehicle for each in schedule.flights}):
         flights = (each for each in schedule.flights if each.vehicle == vehicle)
         yield vehicle, tuple(_flight_bar(schedule, each) for each in flights)
+    if schedule.messages:
+        yield "messages", tuple(_message_bar(schedule, each) for each in schedule.messages)
     if schedule.milestones:
         yield "first true", tuple(_milestone_bar(schedule, each) for each in schedule.milestones)
 
@@ -98,6 +101,12 @@ def _flight_bar(schedule: Schedule, flight: PossibleFlight) -> Bar:
     if flight.ends.is_never:
         return Bar(name, f"{words}, never ends", FLIGHT, begins, (math.inf, math.inf))
     return Bar(name, words, FLIGHT, begins, ends)
+
+
+def _message_bar(schedule: Schedule, message: MessageDates) -> Bar:
+    begins, ends = (_seconds(schedule, each) for each in (message.begins, message.ends))
+    words = interval_text(message.takes, schedule.tick)
+    return Bar(f"{message.agent} → {message.to}", words, MESSAGE, begins, ends)
 
 
 def _milestone_bar(schedule: Schedule, milestone: Milestone) -> Bar:
@@ -136,7 +145,7 @@ def marks(span: float) -> tuple[float, ...]:
 
 def _legend(bars: list[Bar]) -> str:
     said = ["light: in some run, from the earliest to the latest"]
-    said += ["full: under way in every run that flies it then"] if any(bar.surely for bar in bars) else []
+    said += ["full: under way in every run that has it then"] if any(bar.surely for bar in bars) else []
     said += (
         ["open at the right: nothing bounds the latest"] if any(math.isinf(b.ends[1]) for b in bars) else []
     )

@@ -16,9 +16,9 @@ from typing import Any, Final
 
 from bigactors.commands.simulate.one_run import Choice, OneRun, nothing_more
 from bigactors.mission_lookup import digest_of
-from bigactors.studio.graph import MOST_AROUND, MOST_NODES, graph_json, reached
+from bigactors.studio.configuration_graph import MOST_AROUND, MOST_NODES, graph_json, reached
 from bigactors.studio.run_views import parts_json, run_json, sections_of
-from bigactors.studio.values_here import Here, values_here
+from bigactors.studio.values_here import Visit, values_here
 from checker import Limits, ReplayError, Trace, check, replay, to_json
 from checker.properties.ownership import owned
 from checker.properties.stale_steps import stale_steps
@@ -131,7 +131,7 @@ class Exploration:
         trace = _told(run.trace)
         c, before = trace.configurations[at], trace.configurations[at - 1] if at else None
         choices = run.choices(at)
-        here = Here(c, expand(c), choices, trace.race is not None and trace.race.acted == at)
+        here = Visit(c, expand(c), choices, trace.race is not None and trace.race.acted == at)
         return {
             "run": self._address,
             "at": at,
@@ -273,7 +273,7 @@ class Exploration:
 
     def _is_bad(self, c: Configuration) -> bool:
         expansion = expand(c)
-        here = Here(c, expansion, tuple(map(Choice, expansion.transitions)), raced=False)
+        here = Visit(c, expansion, tuple(map(Choice, expansion.transitions)), raced=False)
         return any(each["bad"] for each in values_here(self.mission.properties, here))
 
 

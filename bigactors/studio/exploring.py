@@ -28,7 +28,7 @@ def answers(lines: TextIO) -> Iterator[dict[str, Any]]:
     if mission is None:
         yield {"refused": "the text has mistakes: what is shown is of a text without them"}
         return
-    exploration = Exploration(mission)
+    exploration = Exploration(mission, Path(asked["directory"]))
     yield {"answer": {}}
     for line in lines:
         try:

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, slots=True)
-class Here:
+class Visit:
     """One configuration of a run.
 
     Attributes:
@@ -37,13 +37,13 @@ class Here:
     raced: bool
 
 
-def values_here(properties: Sequence[Property], here: Here) -> list[dict[str, Any]]:
+def values_here(properties: Sequence[Property], here: Visit) -> list[dict[str, Any]]:
     """Return for each property whether it is true here, in words, and whether that is bad; None if it is about runs."""
     found = []
     for each in properties:
         value, words = _value(each, here)
         bad = value is False and (each.kind is PropertyKind.INVARIANT or _is_standard(each))
-        said = {"name": each.name, "kind": each.kind.value, "formula": each.written}
+        said: dict[str, Any] = {"name": each.name, "kind": each.kind.value, "formula": each.written}
         found.append(said | {"value": value, "words": words, "bad": bad})
     return found
 
@@ -52,7 +52,7 @@ def _is_standard(asked: Property) -> bool:
     return asked.kind is PropertyKind.RACE_FREEDOM or asked.kind in BY_LOOKING
 
 
-def _value(asked: Property, here: Here) -> tuple[bool | None, str]:
+def _value(asked: Property, here: Visit) -> tuple[bool | None, str]:
     if asked.is_of_runs or asked.kind is PropertyKind.ENDURANCE:
         return None, "about whole runs"
     if asked.kind is PropertyKind.RACE_FREEDOM:
@@ -71,7 +71,7 @@ def _seen(found: Sequence[Collected]) -> tuple[bool, str]:
     return not messages, messages[0] if messages else "nothing against it here"
 
 
-def _races(here: Here) -> list[Collected]:
+def _races(here: Visit) -> list[Collected]:
     controls, stale = ControlRaces(1), StaleObservationRaces(1)
     for enabled in _together(here):
         controls(0, here.c, Expansion(enabled, ()))
@@ -82,7 +82,7 @@ def _races(here: Here) -> list[Collected]:
     return [controls.collected, stale.collected]
 
 
-def _together(here: Here) -> Iterator[tuple[Transition, ...]]:
+def _together(here: Visit) -> Iterator[tuple[Transition, ...]]:
     """Yield the steps that may be taken at one moment: with times, the pairs whose intervals overlap."""
     if here.c.setting.timing is None:
         yield here.expansion.enabled

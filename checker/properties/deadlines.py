@@ -13,7 +13,7 @@ from checker.engines.timed.first_runs import TimedRun
 from checker.limits import BoundMet
 from checker.properties.critical_path import Leg, critical_path
 from checker.properties.longest_stays import NEVER
-from checker.properties.schedule import EventDates, Milestone, Schedule, flights_of
+from checker.properties.schedule import EventDates, Milestone, Schedule, flights_of, messages_of
 from checker.traces import Trace, dated_trace
 from checker.verdicts import Outcome, Verdict, Violation
 from semantics.properties.kinds import PropertyKind
@@ -185,7 +185,8 @@ class Deadlines:
         """Return the dates of flights, and the first moments of `time` properties."""
         times = [each for each in asked if each.kind is PropertyKind.TIME]
         found = tuple(Milestone(each.name, self._first(each)) for each in times)
-        return Schedule(self.timing.tick, flights_of(self.times), found, self.found.complete)
+        sent = messages_of(self.times)
+        return Schedule(self.timing.tick, flights_of(self.times), found, self.found.complete, sent)
 
     def _first(self, asked: Property) -> EventDates:
         found = self.times.moments(asked.formula)

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from checker.engines.timed.answers import NO_SPAN, TakenStep, Times, VehicleFlight
 from semantics.behaviours.reaction_rules import moved
 from semantics.state.configuration import Configuration
-from semantics.state.requests import FLY
+from semantics.state.requests import FLY, SND
 from semantics.state.signature import REGION, Name
 from semantics.timing.bounds import WrittenBound, bound_of_flight, timed_by
 from semantics.timing.clocks import TimedStep, TimedView
@@ -64,6 +64,17 @@ class PossibleFlight:
 
 
 @dataclass(frozen=True, slots=True)
+class MessageDates:
+    """The dates of a message from one agent to another: its duration, its sending and its arrival."""
+
+    agent: Name
+    to: Name
+    takes: Interval
+    begins: EventDates
+    ends: EventDates
+
+
+@dataclass(frozen=True, slots=True)
 class Milestone:
     """The first moments of a `time` property's proposition."""
 
@@ -80,12 +91,14 @@ class Schedule:
         flights: The possible flights, in the order of their first starts.
         milestones: The first moments of the propositions of its `time` properties.
         complete: Whether everything was explored; else the latest moments are unknown.
+        messages: The messages between agents, in the order of their first sendings.
     """
 
     tick: int
     flights: tuple[PossibleFlight, ...] = ()
     milestones: tuple[Milestone, ...] = ()
     complete: bool = True
+    messages: tuple[MessageDates, ...] = ()
 
     def seconds(self, ticks: float | None) -> float | None:
         """Return ticks in seconds, None where nothing bounds them."""
@@ -132,6 +145,35 @@ def flights_of(times: Times) -> tuple[PossibleFlight, ...]:
         for key in dict.fromkeys((*begun, *ended))
     ]
     return tuple(sorted(found, key=lambda each: (each.begins.earliest, each.ends.earliest, *_key(each))))
+
+
+def messages_of(times: Times) -> tuple[MessageDates, ...]:
+    """Return the messages that are sent in time, in the order of their first sendings."""
+    sent: dict[tuple[Name, Name], set[TakenStep]] = {}
+    heard: dict[tuple[Name, Name], set[TakenStep]] = {}
+    takes: dict[tuple[Name, Name], Interval] = {}
+    for place, situation in enumerate(times.situations):
+        for at in sorted(times.taken(place)):
+            step = situation.steps[at]
+            label, known = step.transition.label, situation.c.eta.all()
+            if label.rule == "req_snd":
+                new = (each.request for each in step.transition.target.eta.all() if each not in known)
+                for request in (each for each in new if isinstance(each, SND)):
+                    sent.setdefault((request.agent, request.to), set()).add(TakenStep(place, at))
+            elif isinstance(label.about, SND):
+                key = (label.about.agent, label.about.to)
+                heard.setdefault(key, set()).add(TakenStep(place, at))
+                interval = timed_by(situation, step).interval
+                takes[key] = _both(takes.get(key, interval), interval)
+    keys = [key for key in sent if key in heard]
+    spans = times.spans([*(sent[key] for key in keys), *(heard[key] for key in keys)])
+    dates = zip(keys, spans, spans[len(keys) :], strict=False)
+    found = [
+        MessageDates(*key, takes[key], EventDates(*begin), EventDates(*end)) for key, begin, end in dates
+    ]
+    return tuple(
+        sorted(found, key=lambda each: (each.begins.earliest, each.ends.earliest, each.agent, each.to))
+    )
 
 
 def _key(flight: PossibleFlight | VehicleFlight) -> _Key:

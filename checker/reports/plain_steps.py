@@ -17,6 +17,13 @@ LOOKS: Final = {
     QueryOperator.HOSTED_AT: "looks which bigActors are at {}",
 }
 
+NOUNS: Final = {
+    QueryOperator.PARENT: "the place of {}",
+    QueryOperator.CHILDREN: "what is in {}",
+    QueryOperator.LINKED_TO: "what is linked to {}",
+    QueryOperator.HOSTED_AT: "the bigActors at {}",
+}
+
 CONTROLS: Final = frozenset({"actuate", "command", "commit"})
 
 
@@ -38,13 +45,18 @@ def agent_words(c: Configuration, agent: Name) -> str:
 def look_words(query: Query) -> str:
     """Return an observation in words.
 
-    >>> look_words(Of(QueryOperator.CHILDREN, Nodes(("gate0",))))
-    'looks into gate0'
+    >>> look_words(Of(QueryOperator.CHILDREN, Of(QueryOperator.PARENT, Nodes(("uav0",)))))
+    'looks into the place of uav0'
     """
     if isinstance(query, Of):
-        inner = str(query.of) if isinstance(query.of, Nodes) else str(query.of).lower()
-        return LOOKS[query.operator].format(inner)
-    return f"looks at {query}" if isinstance(query, Nodes) else "looks at everything"
+        return LOOKS[query.operator].format(_noun(query.of))
+    return f"looks at {_noun(query)}"
+
+
+def _noun(query: Query) -> str:
+    if isinstance(query, Of):
+        return NOUNS[query.operator].format(_noun(query.of))
+    return str(query) if isinstance(query, Nodes) else "everything"
 
 
 def seen_words(query: Query, seen: Observation) -> str:
@@ -93,6 +105,19 @@ def _received(label: Label, _: Configuration, __: tuple[Difference, ...]) -> str
     )
 
 
+def _asks_to_look(label: Label, after: Configuration, _: tuple[Difference, ...]) -> str:
+    asked = (each.request for each in after.eta.all() if each.request.agent == label.agent)
+    query = next(
+        each.query for each in asked if isinstance(each, OBS) and str(each.query) in str(label.about)
+    )
+    return look_words(query).replace("looks", "asks to look", 1)
+
+
+def _sends(label: Label, _: Configuration, __: tuple[Difference, ...]) -> str:
+    message, _, to = str(label.about).removeprefix("send(").removesuffix(")").rpartition(", ")
+    return f"sends {message} to {to}"
+
+
 def _sent(label: Label, _: Configuration, __: tuple[Difference, ...]) -> str:
     assert isinstance(label.about, SND)
     return f"is heard: {label.about.to} gets {show(label.about.message)}"
@@ -112,9 +137,7 @@ def _other(label: Label, _: Configuration, __: tuple[Difference, ...]) -> str:
 
 _VERBS: Final = {
     "fun": "thinks",
-    "req_obs": "asks to observe",
     "req_ctr": "asks for",
-    "req_snd": "sends",
     "rcv_msg": "reads",
     "timeout": "waits no longer:",
     "req_mgr": "asks to move to",
@@ -122,6 +145,8 @@ _VERBS: Final = {
 }
 
 _DEEDS: Final[dict[str, Callable[[Label, Configuration, tuple[Difference, ...]], str]]] = {
+    "req_obs": _asks_to_look,
+    "req_snd": _sends,
     "sense": _sense,
     "actuate": _control,
     "command": _control,

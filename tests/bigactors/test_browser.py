@@ -1,21 +1,22 @@
 """Pages in a browser, with chromium and playwright where both are there: who reads them, as stories."""
 
 import re
+from io import BytesIO
 
 import pytest
 from browsers import DESK, PHONE, Watch, chromium, overflow, says
-from drawn_missions import PLACEMENTS, SIGNATURE, observing, oil_spill, run
+from drawn_missions import observing, oil_spill, run
+from PIL import Image, ImageStat
 
+from bigactors.checking import Checked
+from bigactors.mission_lookup import digest_of
 from bigactors.pages import Story, trace_page
+from bigactors.trace_files import evidence_of, story_of
 from bigraphs.exploration import explore
 from bigraphs.exports import to_html
 from bigraphs.notation import read_system
-from checker import Step, Trace
-from physical import point
-from semantics.behaviours.program import Program
-from semantics.state.initial import initial
-from semantics.state.physical_model import Placed
-from semantics.state.setting import Setting
+from checker import Step, Trace, check
+from specs.elaboration import load_mission
 
 
 @pytest.fixture(scope="module")
@@ -45,52 +46,90 @@ def opened(browser, tmp_path):
 # --- a trace --------------------------------------------------------------------------------------------------
 
 
+def violation(name, prop):
+    """Return the page of a violation of a shipped mission, as `check --trace` writes it."""
+    mission = load_mission(name)
+    checked = Checked(name, mission, digest_of(mission), check(mission), False)
+    return trace_page(next(story_of(checked, each) for each in evidence_of(checked) if each.property == prop))
+
+
+SIZES = """() => [...document.querySelectorAll('.stage .frame')].flatMap((frame) => [...frame.querySelectorAll('text')]
+  .map((text) => parseFloat(getComputedStyle(text).fontSize) * text.getScreenCTM().d))"""
+"""The heights in pixels of all lettering of the map and of the bigraph."""
+
+SPILLED = """() => [...document.querySelectorAll('.lanes-pane .step')].filter((box) => {
+  const [inner, lane] = [box.getBoundingClientRect(), box.closest('td').getBoundingClientRect()];
+  return inner.left < lane.left - 1 || inner.right > lane.right + 1 || box.scrollWidth > box.clientWidth + 1;
+}).length"""
+"""The number of boxes that are not within their lanes."""
+
+
+def test_a_reader_learns_who_did_what_and_when_from_the_page_of_a_race(opened):
+    page = opened(violation("look_before_entry_racy", "race_freedom"))
+    says(
+        page, "header", re.compile("look_before_entry_racy.*race_freedom is violated: stale-observation race")
+    )
+    says(page, ".controls output", "c12 of c12")
+    told = page.locator(".story a").all_inner_texts()
+    assert [each.strip() for each in told] == [
+        "b on uav1 looks into gate0, and sees nobody at c7",
+        "uav0 moves from north0 to gate0, as a wants at c8",
+        "b acts on what it saw: uav1 moves from south0 to gate0 at c12",
+    ]
+    assert page.locator(".lanes-pane tr.guilty .role").all_inner_texts() == ["sensed", "changed", "acted"]
+    page.locator(".story a").first.click()
+    says(page, ".controls output", "c7 of c12")
+    assert page.locator(".stage.guilty").count() == 1
+    page.keyboard.press("ArrowLeft")
+    says(page, ".controls output", "c6 of c12")
+    assert page.locator(".stage.guilty").count() == 0
+    says(page, "footer", re.compile(r".*CTR\(b, MOVE_HOST_TO gate0\) depends on .*sha256:[0-9a-f]{64}.*"))
+
+
+@pytest.mark.parametrize(
+    ("name", "prop"), [("broken_endurance", "endurance"), ("broken_deadlock", "deadlock_freedom")]
+)
+def test_lettering_is_large_enough_boxes_stay_in_their_lanes_and_dark_pictures_are_dark(opened, name, prop):
+    page = opened(violation(name, prop))
+    for scheme, size in (("light", DESK), ("dark", DESK), ("dark", PHONE)):
+        page.emulate_media(color_scheme=scheme)
+        page.set_viewport_size(size)
+        page.reload()
+        page.wait_for_selector(".stage .frame text")
+        assert min(page.evaluate(SIZES)) >= 10.9
+        assert page.evaluate(SPILLED) == 0
+        assert overflow(page) == 0
+        for place in range(2):
+            picture = Image.open(BytesIO(page.locator(".stage .frame").nth(place).screenshot())).convert("L")
+            assert (ImageStat.Stat(picture).mean[0] < 80) == (scheme == "dark")
+
+
+def test_the_page_of_a_run_with_dates_has_gaps_where_time_passes(opened):
+    page = opened(violation("broken_endurance", "endurance"))
+    gaps = page.evaluate(
+        "Object.fromEntries([...document.querySelectorAll('tr.later th')].map((th) => "
+        "[th.dataset.lapse, parseInt(getComputedStyle(th).getPropertyValue('--gap'))]))"
+    )
+    assert gaps == {"+ 6.7 min": 117, "+ 10 s": 18, "+ 6.8 min": 120}
+
+
 def test_a_trace_is_stepped_through_searched_and_read_on_a_phone(opened):
     configurations, labels = run(oil_spill())
     steps = (Step(label, 0, target) for label, target in zip(labels, configurations[1:], strict=True))
     trace = Trace(configurations[0], tuple(steps))
     page = opened(trace_page(Story("t", "", False, trace)))
-    page.keyboard.press("Tab")
-    assert page.evaluate("document.activeElement.id") == "play"
-    goes_from_one_step_that_says_so_to_the_next(page, trace)
-    steps_by_the_arrows(page, trace)
-    page.set_viewport_size(PHONE)
-    for scheme, colour in (("light", "rgb(255, 255, 255)"), ("dark", "rgb(28, 33, 40)")):
-        page.emulate_media(color_scheme=scheme)
-        paper = page.evaluate("getComputedStyle(document.querySelector('section')).backgroundColor")
-        assert (overflow(page), paper) == (0, colour)
-
-
-def goes_from_one_step_that_says_so_to_the_next(page, trace):
     wanted = [n for n, step in enumerate(trace.steps, 1) if step.label.rule == "req_obs"]
-    page.keyboard.press("/")
-    page.keyboard.type("REQ_OBS")
-    says(page, "#found", f"{len(wanted)} found")
-    page.keyboard.press("Enter")
-    says(page, "#number", f"c{wanted[0]} of c{len(trace)}")
-    says(page, "#found", f"1 of {len(wanted)}")
-
-
-def steps_by_the_arrows(page, trace):
+    page.fill("input[type=search]", "REQ_OBS")
+    says(page, ".lanes-pane output", f"{len(wanted)} found")
+    page.press("input[type=search]", "Enter")
+    says(page, ".controls output", f"c{wanted[0]} of c{len(trace)}")
     page.evaluate("document.activeElement.blur()")
     page.keyboard.press("Home")
     page.keyboard.press("ArrowRight")
-    says(page, "#number", f"c1 of c{len(trace)}")
-    assert page.get_attribute("tr[aria-current=step]", "data-row") == "1"
+    says(page, ".controls output", f"c1 of c{len(trace)}")
+    assert page.get_attribute("tr[aria-current=step]", "data-step") == "1"
     page.keyboard.press("End")
-    says(page, "#number", f"c{len(trace)} of c{len(trace)}")
-
-
-def test_what_is_folded_is_unfolded_by_a_click(opened):
-    names = [f"uav{n}" for n in range(36)]
-    setting = Setting(SIGNATURE, {"searchArea0": "Location"} | dict.fromkeys(names, "UAV"), Program())
-    there = dict.fromkeys(names, Placed(point(37.0, -8.7)))
-    c = initial(setting, {"searchArea0": PLACEMENTS["searchArea0"]} | there, {}, {})
-    page = opened(trace_page(Story("t", "", False, Trace(c))))
-    for model in ("L", "P"):
-        page.click(f'[data-picture^="{model}"] [data-names] text')
-        says(page, "#names", f"UAV ×36: {', '.join(names)}")
-        page.click(".caption")
+    says(page, ".controls output", f"c{len(trace)} of c{len(trace)}")
 
 
 def test_each_step_of_a_loop_is_reached_folded_and_unfolded_on_desk_and_phone(opened):
@@ -98,42 +137,27 @@ def test_each_step_of_a_loop_is_reached_folded_and_unfolded_on_desk_and_phone(op
     page = opened(trace_page(Story("t", "", False, flight, times=tuple(n / 2 for n in range(len(flight))))))
     for size in (DESK, PHONE):
         page.set_viewport_size(size)
-        fold = page.locator("tr[data-from]").first
-        begin, end = (int(fold.get_attribute(f"data-{name}")) for name in ("from", "to"))
-        goes_to_a_step_in_the_fold(page, flight, fold, begin)
-        unfolds_it_and_folds_it_again(page, flight, fold, begin)
-        page.locator(".caption").click()
-        page.keyboard.press("j")
-        says(page, "#number", re.compile(f"^c{min(end + 1, len(flight))} of"))
+        page.evaluate("location.hash = '#c1234'")
+        says(page, ".controls output", f"c1234 · 616.5 s of c{len(flight)}")
+        fold = page.locator("tr[aria-current=step] button[aria-expanded]")
+        fold.click()
+        assert page.get_attribute("tr[aria-current=step]", "data-step") == "1234"
+        assert flight.steps[1233].label.rule in page.inner_text("tr[aria-current] .step")
+        assert page.locator(".lanes-pane tr").count() < 450
+        page.evaluate("location.hash = '#c20'")
+        page.locator("button[aria-expanded=true]").click()
+        assert page.locator(".lanes-pane tr").count() < 40
         assert overflow(page) == 0
-    finds_steps_in_the_fold(page)
 
 
-def goes_to_a_step_in_the_fold(page, flight, fold, begin):
-    page.evaluate(f"location.hash = '#c{begin + 500}'")
-    says(page, "#number", f"c{begin + 500} of c{len(flight)} · {(begin + 499) / 2:.1f} s")
-    says(page, "#caption", str(flight.steps[begin + 499].label))
-    assert fold.get_attribute("aria-current") == "step"
-    assert page.locator("tr.unfolded").count() == 0
-
-
-def unfolds_it_and_folds_it_again(page, flight, fold, begin):
-    fold.locator("button").click()
-    assert page.locator("tr.unfolded[data-row]").count() == 200
-    assert page.get_attribute("tr[aria-current]", "data-row") == str(begin + 500)
-    assert flight.steps[begin + 499].label.rule in page.inner_text("tr[aria-current] .step")
-    page.locator("tr.more button").last.click()
-    says(page, "#number", re.compile(f"^c{begin + 600} of"))
-    fold.locator("button").click()
-    assert page.locator("tr.unfolded").count() == 0
-
-
-def finds_steps_in_the_fold(page):
-    page.fill("#find", "c1234")
-    page.press("#find", "Enter")
-    says(page, "#number", re.compile("^c1234 of"))
-    page.fill("#find", "rcv_obs")
-    says(page, "#found", "1000 found")
+def test_without_scripts_the_page_has_its_story_and_its_lanes(browser, tmp_path):
+    (tmp_path / "page.html").write_text(violation("look_before_entry_racy", "race_freedom"), encoding="utf-8")
+    context = browser.new_context(java_script_enabled=False)
+    page = context.new_page()
+    page.goto(f"file://{tmp_path}/page.html")
+    says(page, ".story", re.compile(".*looks into gate0, and sees nobody at c7 · .*at c12"))
+    assert page.locator("main > div > svg").count() == 4
+    context.close()
 
 
 # --- a system of bigraphs -------------------------------------------------------------------------------------

@@ -55,6 +55,13 @@ def test_who_flies_when_is_drawn(bigactors, tmp_path, name):
         assert f"|{word}|" in words
 
 
+def test_a_message_under_way_is_drawn(bigactors, tmp_path):
+    path = tmp_path / "relay.svg"
+    bigactors("show", "relay_timed", "--timeline", "--output", str(path))
+    words = re.sub(r"<[^>]*>", "|", path.read_text())
+    assert all(f"|{word}|" in words for word in ("messages", "eye → desk", "told"))
+
+
 def bar(takes, begins, ends):
     flight = PossibleFlight("uav0", "a", "west0", "east0", takes, begins, ends, WrittenBound())
     ((_, (found,)),) = groups_of(Schedule(1000, (flight,)))

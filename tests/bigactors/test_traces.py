@@ -174,8 +174,8 @@ def test_a_trace_becomes_a_page(bigactors, missions):
     assert (code, err) == (0, "page written to page.html\n")
     page = (missions / "page.html").read_text(encoding="utf-8")
     assert page.startswith("<!DOCTYPE html>\n")
-    assert 'data-start="3"' in page
-    assert page.count("data-frame=") == 9
+    assert '"start":3,' in page
+    assert page.count('"parts":') == 9
 
 
 @pytest.mark.usefixtures("run")

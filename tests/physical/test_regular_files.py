@@ -61,7 +61,7 @@ OWN = {
     "bigactors/lsp/language_server.py",
     "bigactors/lsp/worker.py",
     "bigactors/notebook.py",
-    "bigactors/pages/trace_page.py",
+    "bigactors/pages/scripts.py",
     "bigactors/studio/child_process.py",
     "bigactors/studio/exploring.py",
     "bigactors/studio/mission_file.py",

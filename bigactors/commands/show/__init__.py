@@ -229,12 +229,24 @@ def _write(
     from bigactors.pages import Story
     from bigactors.picture_files import draw, draw_lanes, write_page
     from bigactors.pictures import marks_of
+    from checker.reports.causes import causes_of
 
     marks = marks_of(trace.initial, trace.configurations[step], asked)
     output = options.output
     if output is not None and Path(output).suffix.lower() in PAGES:
-        start = step if options.step is not None else 0
-        story = Story(name, "", False, trace, start, times=times, unfolded=options.all, marks=marks)
+        start = step if options.step is not None or trace.race is not None else 0
+        story = Story(
+            name,
+            "",
+            False,
+            trace,
+            start,
+            causes_of(trace),
+            times=times,
+            unfolded=options.all,
+            marks=marks,
+            properties=asked,
+        )
         left_out = write_page(story, output)
         tell(f"page written to {output}")
         for line in left_out:

@@ -62,7 +62,7 @@ export function Explorer({ ask, state = NOTHING, onLook = () => {}, keys = null 
     return () => clearInterval(timer);
   }, [playing, look]);
   useEffect(() => {
-    const does = { ArrowRight: () => move(1), ArrowLeft: () => move(-1), Home: () => go(0), End: () => go(last), " ": play };
+    const does = { ArrowRight: () => move(1), ArrowLeft: () => move(-1), Home: () => go(0), End: () => go(last), " ": play, "/": () => root.current.querySelector("input[type=search]").focus() };
     const press = (event) => {
       const theirs = "input, textarea, select, .frame, [contenteditable]" + (event.key === " " ? ", button, summary" : "");
       if (!look || !(event.key in does) || event.ctrlKey || event.metaKey || event.altKey || event.target.closest(theirs)) return;

@@ -84,7 +84,7 @@ def test_an_author_walks_into_a_race_is_told_its_causes_and_comes_back_by_the_ad
 
 def test_steps_are_taken_back_and_branched_off_by_keys_and_buttons(opened):
     page = opened("look_before_entry_racy")
-    for name in ("a on uav0 asks to observe", "b on uav1 asks to observe"):
+    for name in ("a on uav0 asks to look into gate0", "b on uav1 asks to look into gate0"):
         page.get_by_role("button", name=name).click()
         expect(page, ".lanes-pane tr[aria-current]").to_contain_text(name)
     page.locator(".explorer .controls button").first.focus()

@@ -24,7 +24,7 @@ Steps = Callable[[Configuration], Iterable[Configuration]]
 
 
 @dataclass(slots=True)
-class Graph:
+class ConfigurationGraph:
     """Configurations as numbers, in the order of discovery, and the steps between them.
 
     Attributes:
@@ -54,9 +54,9 @@ def reached(
     starts: Mapping[Configuration, tuple[str, ...]],
     choices: Callable[[tuple[str, ...], Configuration], Iterable[Choice]],
     most: int,
-) -> Graph:
+) -> ConfigurationGraph:
     """Return the graph of at most so many configurations that is reached from some, breadth first."""
-    graph, end = Graph(), time.monotonic() + SECONDS
+    graph, end = ConfigurationGraph(), time.monotonic() + SECONDS
     for c, address in starts.items():
         graph.add(c, address)
     for c in (waiting := list(starts)):
@@ -79,7 +79,7 @@ def reached(
 
 
 def graph_json(
-    graph: Graph, run: list[Configuration], bad: Callable[[Configuration], bool]
+    graph: ConfigurationGraph, run: list[Configuration], bad: Callable[[Configuration], bool]
 ) -> dict[str, Any]:
     """Return a graph as plain data; chains of configurations without another way are folded into one edge."""
     on_run = {graph.numbers[c]: at for at, c in enumerate(run) if c in graph.numbers}
@@ -104,7 +104,7 @@ def graph_json(
     return {"whole": graph.whole, "count": len(graph.numbers), "nodes": nodes, "edges": edges}
 
 
-def _branching(graph: Graph) -> Iterator[int]:
+def _branching(graph: ConfigurationGraph) -> Iterator[int]:
     """Yield the first configuration, and those that do not have exactly one way in and one way out."""
     ins, outs = Counter(end for _, end in graph.edges), Counter(begin for begin, _ in graph.edges)
     for number in range(len(graph.address)):
@@ -112,7 +112,9 @@ def _branching(graph: Graph) -> Iterator[int]:
             yield number
 
 
-def _chains(graph: Graph, kept: set[int]) -> Iterator[tuple[int, int, list[tuple[str | None, str]], int]]:
+def _chains(
+    graph: ConfigurationGraph, kept: set[int]
+) -> Iterator[tuple[int, int, list[tuple[str | None, str]], int]]:
     """Yield the edges between kept configurations: begin, end, steps, and the number of folded configurations."""
     onward = {begin: end for begin, end in graph.edges if begin not in kept}
     for (begin, end), steps in graph.edges.items():
