@@ -33,7 +33,7 @@ function summaryOf({ complete, bounds, configurations, transitions, seconds }) {
 function Verdict({ app, about }) {
   const { name, verdict, violations, count: times, examined, note, remarks, line } = about;
   const run = runOf(about);
-  const sizes = verdict === "violated" ? count(times, "violation") : examined ? `${count(examined, "time")} examined` : "";
+  const sizes = verdict === "violated" ? count(times, "violation") : examined ? `examined ${examined.toLocaleString("en")}` : "";
   return html`<li class=${`verdict-${verdict}`}>
     <b class="mark" aria-label=${verdict}>${MARKS[verdict]}</b>
     <div><button type="button" class="name" disabled=${line < 1} onClick=${() => app.editor.goTo(line)}>${name}</button> <span class="quiet">${[sizes, note].filter(Boolean).join(" · ")}</span>

@@ -230,6 +230,10 @@ def test_a_name_is_chosen_in_the_text_on_the_map_and_in_the_bigraph_together(ope
     says(page, ".chosen-name", "west0 ×")
     assert page.evaluate("studio.editor.view.root.querySelector('.cm-chosen-name').textContent") == "west0"
     picture(page, "chosen")
+    for width, height in ((1024, 768), (390, 844)):
+        page.set_viewport_size({"width": width, "height": height})
+        assert overflow(page) == 0
+        picture(page, f"chosen-{width}")
 
 
 def test_the_world_is_drawn_on_the_map_and_its_text_follows_until_it_is_undone(opened, tmp_path):
