@@ -367,7 +367,8 @@ const MapElement = memo(({ app }) => {
 function Exploring({ app }) {
   const wanted = useWatched(app.wanted);
   const { run, at } = useWatched(app.shown);
-  return wanted && html`<${Explorer} ask=${app.ask} state=${wanted} onLook=${app.looked} />
+  return wanted && html`<h2 class="unseen">Explorer</h2>
+    <${Explorer} ask=${app.ask} state=${wanted} onLook=${app.looked} />
     <${Graph} ask=${app.ask} run=${run} at=${at} onGo=${(there) => app.wanted.set({ run: there })} />`;
 }
 

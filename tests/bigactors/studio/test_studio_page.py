@@ -11,9 +11,10 @@ from browsers import DESK, PATIENCE, Watch, chromium, overflow, playwright, says
 from threaded import loop_beside
 
 from adapters.console.access import Access
-from adapters.console.console_server import Site, listening
+from adapters.console.console_server import PAGE, Site, listening
 from bigactors.studio.studio_server import StudioService, lacks_parts
 
+AXE = PAGE / "node_modules" / "axe-core" / "axe.min.js"
 MISSION = """\
 mission patrol
 signature {
@@ -272,6 +273,21 @@ def test_the_world_is_drawn_on_the_map_and_its_text_follows_until_it_is_undone(o
         page.keyboard.press("Control+z")
     until(page, "studio.editor.text.includes('radius 900 m')")
     assert text_of(page) == MISSION
+
+
+@pytest.mark.parametrize("theme", ["light", "dark"])
+def test_axe_finds_no_fault_in_the_studio(opened, theme):
+    if not AXE.exists():
+        pytest.skip("axe-core is not there: `make parts` fetches it")
+    page = opened("patrol.mission", MISSION, theme=theme)
+    shows(page, ".bigraph svg")
+    shows(page, ".verdicts .verdict-holds")
+    page.click("text=Draw")
+    put_cursor(page, "  east")
+    shows(page, ".handle-radius")
+    page.evaluate(f"{AXE.read_text(encoding='utf-8')};0")
+    found = page.evaluate("axe.run(document, { resultTypes: ['violations'] })")
+    assert [(each["id"], [node["html"] for node in each["nodes"]]) for each in found["violations"]] == []
 
 
 def playwright_pattern(words):
