@@ -148,8 +148,14 @@ class Session:
     def _begin(self, work: Coroutine[Any, Any, None]) -> asyncio.Task[None]:
         task = asyncio.create_task(work)
         self._tasks.add(task)
-        task.add_done_callback(self._tasks.discard)
+        task.add_done_callback(self._finished)
         return task
+
+    def _finished(self, task: asyncio.Task[None]) -> None:
+        self._tasks.discard(task)
+        error = None if task.cancelled() else task.exception()
+        if error is not None and not isinstance(error, ConnectionError):  # else the page is gone
+            task.get_loop().call_exception_handler({"message": str(error), "exception": error, "task": task})
 
     async def _fly(self, number: int) -> None:
         try:
