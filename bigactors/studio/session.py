@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Callable, Coroutine, Iterable
+from collections.abc import Awaitable, Callable, Coroutine, Iterable
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import partial
@@ -88,7 +88,7 @@ class Session:
     async def run(self) -> None:
         """Greet the page and answer it; end its processes with it."""
         try:
-            await self._greet()
+            await self._in_words(self._greet())
             self._begin(self._watch_file())
             async for message in self._socket:
                 if isinstance(message.data, str):
@@ -101,9 +101,15 @@ class Session:
 
     async def _hear(self, frame: str) -> None:
         try:
-            await self._answer(read_request(frame))
+            request = read_request(frame)
         except PhysicalError as error:
             await self._tell(f"this page sent what the studio cannot read: {error.message}")
+        else:
+            await self._in_words(self._answer(request))
+
+    async def _in_words(self, work: Awaitable[None]) -> None:
+        try:
+            await work
         except Mistake as mistake:
             await self._tell(str(mistake))
 

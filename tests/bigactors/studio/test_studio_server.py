@@ -95,6 +95,14 @@ async def test_a_frame_that_is_no_request_is_answered_in_words(file, frame):
         assert said["message"].startswith("this page sent what the studio cannot read: ")
 
 
+async def test_a_file_that_is_no_text_is_refused_in_words_and_left_as_it_is(file):
+    file.write_bytes(b"mission \xff")
+    async with page(file) as (_, heard):
+        said = await heard("error")
+        assert said["message"] == f"{file}: this is no text in UTF-8\n  hint: save it as UTF-8"
+    assert file.read_bytes() == b"mission \xff"
+
+
 async def test_a_frame_beyond_the_limit_ends_the_connection(file):
     async with page(file) as (socket, heard):
         with suppress(ConnectionError):  # it is cut while the frame is on its way
