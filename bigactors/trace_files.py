@@ -10,7 +10,7 @@ from bigactors.pages import MOST_PICTURES, Story, trace_page
 from bigactors.picture_files import draw_run
 from bigactors.pictures import RegionMarks, marks_of
 from checker import Trace, print_trace, to_json
-from checker.reports.causes import Cause, causes_of
+from checker.reports.causes import Cause, causes_of, formulas_of
 from semantics.properties.kinds import PropertyKind
 from semantics.state.printing import print_configuration
 
@@ -49,9 +49,7 @@ def evidence_of(checked: Checked) -> Iterator[Evidence]:
     initial = checked.mission.initial
     for verdict in checked.report.verdicts:
         name = verdict.property.name
-        formulas = tuple(
-            each for each in (verdict.property.formula, verdict.property.then) if each is not None
-        )
+        formulas = formulas_of(verdict.property)
         for violation in verdict.violations:
             about = f"{name} violated: {violation.kind}: {violation.message}"
             yield Evidence(

@@ -94,9 +94,7 @@ def telling(story: Story) -> PageContent:
         "order": order,
         "looks": looks,
         "pictures": pictures,
-        "dates": [
-            trace.date(n) or (f"{story.times[n]:.1f} s" if story.times else "") for n in range(len(trace))
-        ],
+        "dates": [trace.date(n) for n in range(len(trace))] if trace.dates else [],
         "moments": list(trace.moments)
         or [round(1000 * max(0.0, each - story.times[0])) for each in story.times],
         "roles": {} if trace.race is None else trace.race.roles,
@@ -134,7 +132,7 @@ def _looks(story: Story, held: Sequence[int]) -> tuple[list[str], list[dict[str,
             "values": values_here(asked, Visit(c, Expansion((), ()), (), raced=False)),
             "pictures": [
                 None if svg is None else pictures.setdefault(svg, len(pictures))
-                for svg in (*(None if each is None else each.picture.svg for each in drawn), legend)
+                for svg in (*(None if each is None else each.svg for each in drawn), legend)
             ],
             "text": text_of(c),
             "places": places_text(c),

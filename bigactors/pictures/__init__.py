@@ -4,14 +4,13 @@ Beliefs, the actual world and changes come from `semantics`; nothing is decided 
 """
 
 from bigactors.pictures.configuration_picture import Look, draw_configuration, legend_picture, look_of
-from bigactors.pictures.panels import Panel, Panels, logical_picture
+from bigactors.pictures.panels import Panels, logical_picture
 from bigactors.pictures.region_marks import RegionMarks, marks_of
 from bigactors.pictures.scene import channels_of, shown_names
 from bigactors.pictures.trace import draw_overview, draw_trace
 
 __all__ = [
     "Look",
-    "Panel",
     "Panels",
     "RegionMarks",
     "channels_of",

@@ -22,14 +22,6 @@ MAGNIFIED: Final = 1.15
 """The magnification of a bigraph."""
 
 
-@dataclass(frozen=True, slots=True)
-class Panel:
-    """A picture of one model, with its key in a page."""
-
-    key: str
-    picture: Picture
-
-
 @dataclass(slots=True)
 class Panels:
     """The pictures of a run; identical ones are drawn once.
@@ -45,8 +37,8 @@ class Panels:
     within: tuple[Geometry, ...]
     most: int
     marks: RegionMarks | None = None
-    logicals: dict[Hashable, Panel] = field(default_factory=dict)
-    physicals: dict[Hashable, Panel] = field(default_factory=dict)
+    logicals: dict[Hashable, Picture] = field(default_factory=dict)
+    physicals: dict[Hashable, Picture] = field(default_factory=dict)
 
     @staticmethod
     def of(configurations: Sequence[Configuration], most: int, marks: RegionMarks | None = None) -> "Panels":
@@ -56,20 +48,20 @@ class Panels:
         marked = () if marks is None else marks.positions(configurations)
         return Panels(tuple(dict.fromkeys((*seen, *marked))), most, marks)
 
-    def logical(self, c: Configuration, before: Configuration | None) -> Panel | None:
+    def logical(self, c: Configuration, before: Configuration | None) -> Picture | None:
         """Return the picture of L with changes since the configuration before glowing; None once there are `most`."""
         look, bigraph = look_of(c, before), c.structure.logical.bigraph()
         shown = (bigraph, look.glowing, look.marked)
         if shown not in self.logicals and len(self.logicals) < self.most:
-            self.logicals[shown] = Panel(f"L{len(self.logicals)}", logical_picture(bigraph, look, "L"))
+            self.logicals[shown] = logical_picture(bigraph, look, "L")
         return self.logicals.get(shown)
 
-    def physical(self, c: Configuration, before: Configuration | None) -> Panel | None:
+    def physical(self, c: Configuration, before: Configuration | None) -> Picture | None:
         """Return the map of P with changes since the configuration before glowing; None once there are `most`."""
         look, entities = look_of(c, before, self.marks), map_entities(c)
         shown = (entities, look.glowing, look.marked, look.ways)
         if shown not in self.physicals and len(self.physicals) < self.most:
-            self.physicals[shown] = Panel(f"P{len(self.physicals)}", self._map(entities, look))
+            self.physicals[shown] = self._map(entities, look)
         return self.physicals.get(shown)
 
     def _map(self, entities: Sequence[MapEntity], look: Look) -> Picture:

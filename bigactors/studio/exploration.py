@@ -18,12 +18,13 @@ from bigactors.commands.simulate.one_run import Choice, OneRun, nothing_more
 from bigactors.mission_lookup import digest_of
 from bigactors.studio.configuration_graph import MOST_AROUND, MOST_NODES, graph_json, reached
 from bigactors.studio.run_views import parts_json, run_json, sections_of
-from bigactors.studio.values_here import Visit, values_here
+from bigactors.studio.values_here import Visit, values_here, wrong_here
 from checker import Limits, ReplayError, Trace, check, replay, to_json
 from checker.properties.ownership import owned
 from checker.properties.stale_steps import stale_steps
-from checker.reports.causes import causes_of
+from checker.reports.causes import Cause, causes_of, formulas_of
 from checker.reports.plain_steps import step_words
+from checker.verdicts import Violation
 from semantics.properties.kinds import PropertyKind
 from semantics.properties.property import Property, watching
 from semantics.properties.propositions import holds
@@ -130,23 +131,31 @@ class Exploration:
             raise ExplorationError(f"there is no c{str(at)[:20]}: the run ends with c{len(run.taken)}")
         trace = _told(run.trace)
         c, before = trace.configurations[at], trace.configurations[at - 1] if at else None
-        choices = run.choices(at)
-        here = Visit(c, expand(c), choices, trace.race is not None and trace.race.acted == at)
+        here = self._visit(trace, at)
         return {
             "run": self._address,
             "at": at,
             "length": len(trace),
-            **run_json(trace, causes_of(trace)),
-            "choices": [self._choice_json(rank, c, each) for rank, each in enumerate(choices)],
-            "nothing": ""
-            if choices
-            else nothing_more(run)
-            if at == len(trace)
-            else "nothing more is enabled",
+            **run_json(trace, self._causes(trace)),
+            "choices": [self._choice_json(rank, c, each) for rank, each in enumerate(here.choices)],
+            "nothing": "" if here.choices else nothing_more(run),
             "values": values_here(self.mission.properties, here),
             "parts": parts_json(c, before),
             "view": sections_of(c, before, self.mission.fixed, at),
         }
+
+    def _visit(self, trace: Trace, at: int) -> Visit:
+        c, raced = trace.configurations[at], trace.race is not None and trace.race.acted == at
+        return Visit(c, expand(c), self._run.choices(at), raced)
+
+    def _causes(self, trace: Trace) -> tuple[Cause, ...]:
+        """Return the causes of what is wrong at the end of a run; nothing if all is well there."""
+        end = self._visit(trace, len(trace))
+        for asked in self.mission.properties:
+            for each in wrong_here(asked, end):
+                violation = Violation(each.kind, each.message, trace, subject=each.subject)
+                return causes_of(trace, violation, formulas_of(asked))
+        return causes_of(trace)
 
     def _choice_json(self, rank: int, c: Configuration, choice: Choice) -> dict[str, Any]:
         label, target = choice.transition.label, choice.transition.target

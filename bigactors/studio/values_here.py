@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import combinations
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 from checker.check import BY_LOOKING
-from checker.properties.findings import Collected
-from checker.properties.races import ControlRaces, StaleObservationRaces
+from checker.properties.findings import Collected, Finding
+from checker.properties.races import STALE, ControlRaces, StaleObservationRaces
 from semantics.properties.kinds import PropertyKind
 from semantics.properties.property import Property
 from semantics.properties.propositions import holds
@@ -18,6 +18,10 @@ from semantics.successors import Expansion
 
 if TYPE_CHECKING:
     from bigactors.commands.simulate.one_run import Choice
+
+
+STANDARD: Final = frozenset({PropertyKind.RACE_FREEDOM, *BY_LOOKING})
+"""The properties without a proposition of the mission's own."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,34 +45,39 @@ def values_here(properties: Sequence[Property], here: Visit) -> list[dict[str, A
     """Return for each property whether it is true here, in words, and whether that is bad; None if it is about runs."""
     found = []
     for each in properties:
-        value, words = _value(each, here)
-        bad = value is False and (each.kind is PropertyKind.INVARIANT or _is_standard(each))
+        value, words, bad = _value(each, here)
         said: dict[str, Any] = {"name": each.name, "kind": each.kind.value, "formula": each.written}
         found.append(said | {"value": value, "words": words, "bad": bad})
     return found
 
 
-def _is_standard(asked: Property) -> bool:
-    return asked.kind is PropertyKind.RACE_FREEDOM or asked.kind in BY_LOOKING
-
-
-def _value(asked: Property, here: Visit) -> tuple[bool | None, str]:
+def _value(asked: Property, here: Visit) -> tuple[bool | None, str, bool]:
     if asked.is_of_runs or asked.kind is PropertyKind.ENDURANCE:
-        return None, "about whole runs"
+        return None, "about whole runs", False
+    wrong = wrong_here(asked, here)
+    if asked.kind in STANDARD:
+        return not wrong, wrong[0].message if wrong else "nothing against it here", bool(wrong)
+    value = holds(asked.formula, here.c)
+    return value, "true here" if value else "not true here", bool(wrong)
+
+
+def wrong_here(asked: Property, here: Visit) -> list[Finding]:
+    """Return what contradicts a property in a configuration; nothing for a property of whole runs."""
+    if asked.is_of_runs:
+        return []
     if asked.kind is PropertyKind.RACE_FREEDOM:
-        value, words = _seen(_races(here))
-        return value and not here.raced, "the last step was a stale-observation race" if here.raced else words
+        last = [Finding(STALE, "the last step was a stale-observation race", 0)] if here.raced else []
+        return [*last, *_first(_races(here))]
     if asked.kind in BY_LOOKING:
         inspection = BY_LOOKING[asked.kind](1)
         inspection(0, here.c, here.expansion)
-        return _seen([inspection.collected])
-    value = holds(asked.formula, here.c)
-    return value, "true here" if value else "not true here"
+        return _first([inspection.collected])
+    is_false = asked.kind is PropertyKind.INVARIANT and not holds(asked.formula, here.c)
+    return [Finding("invariant", "not true here", 0)] if is_false else []
 
 
-def _seen(found: Sequence[Collected]) -> tuple[bool, str]:
-    messages = [finding.message for each in found for finding in each.first.values()]
-    return not messages, messages[0] if messages else "nothing against it here"
+def _first(found: Sequence[Collected]) -> list[Finding]:
+    return [finding for each in found for finding in each.first.values()]
 
 
 def _races(here: Visit) -> list[Collected]:

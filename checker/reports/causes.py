@@ -9,8 +9,11 @@ from typing import Final
 from checker.reports.plain_steps import step_words
 from checker.traces import Trace
 from checker.verdicts import Violation
+from semantics.properties.property import Property
 from semantics.properties.propositions import Proposition, atoms_of, holds
 from semantics.properties.region_atoms import RegionAtom, operands
+from semantics.properties.temporal import Now
+from semantics.properties.temporal import atoms as temporal_atoms
 from semantics.state.configuration import Configuration
 from semantics.state.requests import CTR, FLY, Request
 from semantics.state.signature import Name
@@ -54,9 +57,29 @@ def causes_of(
         return ()
     if violation.kind == "deadlock":
         return tuple(_waits(trace, violation))
-    found = {*_requests(trace, violation.subject), *_flips(trace, formulas)} or {len(trace)}
+    found = {*_requests(trace, violation.subject), *_flips(trace, formulas)}
+    if not found and trace.loop is None:
+        found = {len(trace)}
     told = [Cause(number, _words(trace, number)) for number in sorted(found)[-MOST:]]
-    return (*told, Cause(len(trace), violation.message)) if violation.kind in OF_TIME else tuple(told)
+    return (*told, *_ends(trace, violation))
+
+
+def formulas_of(asked: Property) -> tuple[Proposition, ...]:
+    """Return the propositions about configurations in a property."""
+    temporal = () if asked.temporal is None else temporal_atoms(asked.temporal)
+    states = (each.proposition for each in temporal if isinstance(each, Now))
+    return (*(each for each in (asked.formula, asked.then) if each is not None), *states)
+
+
+def _ends(trace: Trace, violation: Violation) -> Iterator[Cause]:
+    """Yield what is wrong at the end of the run, where no step is: too late a moment, or what never happens."""
+    end = len(trace)
+    if violation.kind in OF_TIME:
+        yield Cause(end, violation.message)
+    elif trace.loop == end:
+        yield Cause(end, "the run may stay as it is for ever")
+    elif trace.loop is not None:
+        yield Cause(end, f"the steps since c{trace.loop} repeat for ever")
 
 
 def _words(trace: Trace, number: int) -> str:

@@ -114,7 +114,7 @@ def _asks_to_look(label: Label, after: Configuration, _: tuple[Difference, ...])
 
 
 def _sends(label: Label, _: Configuration, __: tuple[Difference, ...]) -> str:
-    message, _, to = str(label.about).removeprefix("send(").removesuffix(")").rpartition(", ")
+    message, _comma, to = str(label.about).removeprefix("send(").removesuffix(")").rpartition(", ")
     return f"sends {message} to {to}"
 
 

@@ -8,6 +8,7 @@ from browsers import DESK, PHONE, Watch, chromium, overflow, says
 from drawn_missions import observing, oil_spill, run
 from PIL import Image, ImageStat
 
+from adapters.console.console_server import PAGE
 from bigactors.checking import Checked
 from bigactors.mission_lookup import digest_of
 from bigactors.pages import Story, trace_page
@@ -17,6 +18,8 @@ from bigraphs.exports import to_html
 from bigraphs.notation import read_system
 from checker import Step, Trace, check
 from specs.elaboration import load_mission
+
+AXE = PAGE / "node_modules" / "axe-core" / "axe.min.js"
 
 
 @pytest.fixture(scope="module")
@@ -148,6 +151,17 @@ def test_each_step_of_a_loop_is_reached_folded_and_unfolded_on_desk_and_phone(op
         page.locator("button[aria-expanded=true]").click()
         assert page.locator(".lanes-pane tr").count() < 40
         assert overflow(page) == 0
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_axe_finds_no_fault_in_the_page_of_a_violation(opened, scheme):
+    if not AXE.exists():
+        pytest.skip("axe-core is not there: `make parts` fetches it")
+    page = opened(violation("broken_crossing", "apart"))
+    page.emulate_media(color_scheme=scheme)
+    page.evaluate(f"{AXE.read_text(encoding='utf-8')};0")
+    found = page.evaluate("axe.run(document, { resultTypes: ['violations'] })")
+    assert [(each["id"], each["nodes"][0]["html"]) for each in found["violations"]] == []
 
 
 def test_without_scripts_the_page_has_its_story_and_its_lanes(browser, tmp_path):

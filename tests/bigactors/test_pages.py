@@ -189,8 +189,7 @@ def test_a_trace_without_steps_is_a_page(trace):
 def test_all_maps_of_a_run_have_one_view(trace):
     panels = Panels.of(trace.configurations, 100)
     grids = {
-        tuple(re.findall(r">([\d.]+°[NSEW])<", panels.physical(c, None).picture.shapes))
-        for c in trace.configurations
+        tuple(re.findall(r">([\d.]+°[NSEW])<", panels.physical(c, None).shapes)) for c in trace.configurations
     }
     assert len(grids) == 1
 

@@ -152,7 +152,7 @@ def _show_timeline(options: Namespace) -> Exit:
     for line in times_text(schedule):
         say(line)
     output = options.output or f"{file_stem(name)}-timeline.svg"
-    draw_schedule(schedule, output, f"{name}: who flies when")
+    draw_schedule(schedule, output, f"{name}: what happens when")
     tell(f"picture written to {output}")
     return Exit.HOLDS
 

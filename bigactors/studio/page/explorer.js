@@ -91,7 +91,7 @@ export function Explorer({ ask, state = NOTHING, onLook = () => {}, keys = null 
 /** The causes of what the run ends in, each with a link to its step. */
 export function Story({ look, go }) {
   if (look.causes.length === 0) return null;
-  return html`<p class="story">${look.causes.map(({ step, text }, n) => html`${n > 0 && html`<span class="then"> · </span>`}<a key=${step} href=${`#c${step}`} aria-current=${step === look.at ? "step" : null} onClick=${(event) => (event.preventDefault(), go(step))}>
+  return html`<p class="story">${look.causes.map(({ step, text }, n) => html`${n > 0 && html`<span class="then"> · </span>`}<a key=${n} href=${`#c${step}`} aria-current=${step === look.at ? "step" : null} onClick=${(event) => (event.preventDefault(), go(step))}>
     ${text} <span class="at">at c${step}</span></a>`)}</p>`;
 }
 
@@ -151,7 +151,7 @@ function Choices({ look, take }) {
   const agents = [...new Set(look.choices.map(({ agent }) => agent))];
   return html`<section class="choices" aria-label="Possible steps">
     ${look.choices.length === 0 && html`<p class="none">${look.nothing}</p>`}
-    ${agents.map((agent) => html`<div key=${agent ?? ""}><h3>${agent ?? "environment"}</h3>
+    ${agents.map((agent) => html`<div key=${agent ?? ""}><h2>${agent ?? "environment"}</h2>
       <ul>${look.choices.filter((each) => each.agent === agent).map((each) => html`<${Choice} key=${each.step} choice=${each} take=${take} />`)}</ul></div>`)}
   </section>`;
 }
@@ -199,7 +199,7 @@ export function Lanes({ look, go }) {
   const begin = Math.max(0, Math.min(current - MOST_ROWS / 2, rows.length - MOST_ROWS));
   const shown = rows.slice(begin, begin + MOST_ROWS);
   const lapses = lapsesOf(look);
-  const longest = Math.max(1, ...lapses);
+  const longest = lapses.reduce((most, lapse) => Math.max(most, lapse), 1);
   const hits = wish ? look.steps.flatMap((step, n) => (`${step.words} ${step.label} c${n + 1}`.toLowerCase().includes(wish) ? [n + 1] : [])) : [];
   const found = new Set(hits);
   const seek = (event) => {
@@ -252,6 +252,6 @@ const Step = ({ step }) => html`<div class=${`step ${step.sort}`} title=${step.l
 /** The agents and the pending requests; new ones are marked. */
 function Parts({ parts }) {
   if (!parts) return null;
-  const list = (sign, gloss, lines) => html`<div><h3>${sign} <small>${gloss}</small></h3><ul>${lines.length === 0 ? html`<li>∅</li>` : lines.map(([text, isNew], n) => html`<li key=${n} class=${isNew ? "new" : ""}>${text}</li>`)}</ul></div>`;
+  const list = (sign, gloss, lines) => html`<div><h2>${sign} <small>${gloss}</small></h2><ul>${lines.length === 0 ? html`<li>∅</li>` : lines.map(([text, isNew], n) => html`<li key=${n} class=${isNew ? "new" : ""}>${text}</li>`)}</ul></div>`;
   return html`<div class="parts">${list("α", "agents", parts.agents)}${list("η", "pending requests", parts.requests)}</div>`;
 }

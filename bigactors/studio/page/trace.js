@@ -5,7 +5,9 @@ import { Explorer } from "/studio/explorer.js";
 
 const data = JSON.parse(document.getElementById("run").textContent);
 const causes = new Map(data.causes.map(({ step, text }) => [step, text]));
-const steps = data.steps.map((deed, n) => ({ ...data.deeds[deed], date: data.dates[n], at: data.moments[n], role: data.roles[n + 1], cause: causes.get(n + 1) }));
+/** The date of a step: as the mission's clock has it, else in seconds since the first step. */
+const dateOf = (n) => data.dates[n] ?? (data.moments.length ? `${(data.moments[n] / 1000).toFixed(1)} s` : "");
+const steps = data.steps.map((deed, n) => ({ ...data.deeds[deed], date: dateOf(n), at: data.moments[n], role: data.roles[n + 1], cause: causes.get(n + 1) }));
 const NOWHERE = { parts: null, values: [], pictures: [], text: "", places: "" };
 
 /** Answer as an exploration does. */

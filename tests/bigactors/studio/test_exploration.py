@@ -99,6 +99,17 @@ def test_a_violation_loaded_from_its_trace_ends_in_the_same_race_with_the_same_c
     assert (value["value"], value["bad"]) == (False, True)
 
 
+def test_a_run_into_what_an_invariant_forbids_is_told_its_causes():
+    exploration = exploring("broken_crossing")
+    violation = check(exploration.mission).verdicts["apart"].violations[0]
+    shown = asked(exploration, ask="load", trace=to_json(violation.trace, "m", "d"))
+    assert [each["text"] for each in shown["causes"]] == [
+        "uav0 sets off for east0, as first wants",
+        "uav1 sets off for north0, as second wants",
+    ]
+    assert asked(exploration, ask="run", run=shown["run"].rpartition(".")[0])["causes"] == []
+
+
 def test_the_graph_has_the_reachable_configurations_and_each_node_is_where_its_address_leads():
     exploration = exploring("broken_inconsistent")
     graph = asked(exploration, ask="graph", run="0.0")

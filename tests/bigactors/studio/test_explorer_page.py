@@ -70,7 +70,7 @@ def expect(page, selector):
 
 def test_an_author_walks_into_a_race_is_told_its_causes_and_comes_back_by_the_address(opened):
     page = opened("look_before_entry_racy")
-    expect(page, ".choices h3").to_have_text("a")
+    expect(page, ".choices h2").to_have_text("a")
     page.get_by_label("go to where this is true").fill("uav0 in gate0 and uav1 in gate0")
     page.get_by_role("button", name="Go to where").click()
     expect(page, ".story").to_contain_text("looks into gate0, and sees nobody at c")

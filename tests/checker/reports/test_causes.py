@@ -1,9 +1,11 @@
 """The causes of violations: who did what, and when, in plain sentences."""
 
+from pathlib import Path
+
 import pytest
 
 from checker import check
-from checker.reports.causes import causes_of
+from checker.reports.causes import causes_of, formulas_of
 from specs.elaboration import load_mission
 
 TOLD = [
@@ -44,10 +46,33 @@ TOLD = [
 ]
 
 
+CORPUS = Path(__file__).parents[2] / "corpus" / "violated"
+
+FOR_EVER = [
+    ("runs", "it comes south", {6: "the steps since c0 repeat for ever"}),
+    ("runs", "never south", {3: "uav0 moves from north0 to south0, as a wants"}),
+    (
+        "unserved",
+        "a patient hand, the link gone",
+        {1: "g on gcs0 asks for MOVE uav0 TO south0", 2: "the run may stay as it is for ever"},
+    ),
+]
+
+
+@pytest.mark.parametrize(("mission", "name", "told"), FOR_EVER, ids=[each[1] for each in FOR_EVER])
+def test_a_run_that_never_ends_is_told_with_what_it_does_for_ever(mission, name, told):
+    verdict = check(load_mission(CORPUS / f"{mission}.mission")).verdicts[name]
+    violation = verdict.violations[0]
+    found = causes_of(violation.trace, violation, formulas_of(verdict.property))
+    assert {each.number: each.text for each in found} == told
+
+
 @pytest.mark.parametrize(("mission", "name", "told"), TOLD, ids=[each[0] for each in TOLD])
 def test_a_violation_has_its_causes_in_the_order_of_the_run(mission, name, told):
     verdict = check(load_mission(mission)).verdicts[name]
     violation = verdict.violations[0]
-    formulas = (verdict.property.formula,)
-    found = {each.number: each.text for each in causes_of(violation.trace, violation, formulas)}
+    found = {
+        each.number: each.text
+        for each in causes_of(violation.trace, violation, formulas_of(verdict.property))
+    }
     assert found == told
