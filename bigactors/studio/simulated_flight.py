@@ -51,7 +51,7 @@ def _flown(file: str, folder: Path) -> int:
     flight = replace(prepare(parse_arguments(["run", file, "--console", *names, *files])), rate=SPEED)
     terminal = Terminal(flight.resting, tuple(flight.plan.vehicles))
     with record(flight) as tape, flying_output():
-        watchers = (terminal, *([] if tape is None else [tape]))
+        watchers: tuple[Watcher, ...] = (terminal,) if tape is None else (terminal, tape)
         flying = _flying(flight, watchers, None if tape is None else tape.preflight, list(vehicles.values()))
         ending = run_simulated(flying, SPEED)
         terminal.ends()
