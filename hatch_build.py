@@ -5,7 +5,7 @@ would be taken from everybody else (PyPI has another `adapters`). So the wheel h
 the repository, with every import of a room rewritten on the line where it stands.
 
 `python hatch_build.py FROM TO` writes a folder so: the tests that run against the wheel. `python hatch_build.py parts`
-has npm fetch what the console's page is made of, and copies the files that it loads to where the page finds them; both
+has npm fetch what the pages are made of, and copies the files that they load to where a page finds them; both
 sdist and wheel contain them, so a wheel is made from the sdist without npm.
 """
 
@@ -40,7 +40,15 @@ PARTS = {
     "preact.js": "htm/preact/standalone.module.js",
     "protomaps-leaflet.js": "protomaps-leaflet/dist/protomaps-leaflet.js",
 }
-"""The files that the console's page loads, by the packages that npm puts into `node_modules`."""
+"""The files that the pages load, by the packages that npm puts into `node_modules`."""
+
+EDITOR = (
+    *(f"@codemirror/{name}" for name in ("autocomplete", "commands", "language", "lint", "lsp-client")),
+    *("@codemirror/search", "@codemirror/state", "@codemirror/view", "@lezer/highlight"),
+)
+"""The packages that esbuild makes one module of, for the studio: `codemirror.js`."""
+
+NO_NPM = "there is no npm: all works but `bigactors console` and `bigactors studio`, whose pages need it"
 
 
 class CustomBuildHook(BuildHookInterface[Any]):
@@ -121,7 +129,7 @@ def gather_parts() -> None:
     """Fetch what the console's page is made of, and put what it loads into `parts`, with the licenses."""
     npm = which("npm")
     if npm is None:
-        print("there is no npm: all works but `bigactors console`, whose page needs it", file=sys.stderr)  # noqa: T201
+        print(NO_NPM, file=sys.stderr)  # noqa: T201
         return
     subprocess.run(
         [npm, "ci", "--ignore-scripts", "--no-audit", "--no-fund", "--silent"], cwd=PAGE, check=True
@@ -130,9 +138,30 @@ def gather_parts() -> None:
     (PAGE / "parts").mkdir()
     for part, source in PARTS.items():
         copyfile(PAGE / "node_modules" / source, PAGE / "parts" / part)
+    bundle = [
+        npm,
+        "exec",
+        "--offline",
+        "--",
+        "esbuild",
+        "--bundle",
+        "--format=esm",
+        "--minify",
+        "--log-level=warning",
+    ]
+    exports = "".join(f'export * from "{name}";\n' for name in EDITOR)
+    with (PAGE / "parts" / "codemirror.js").open("wb") as file:
+        subprocess.run(bundle, cwd=PAGE, input=exports.encode(), stdout=file, check=True)
+    tools = tools_of(json.loads((PAGE / "package-lock.json").read_text(encoding="utf-8")))
     packages = sorted((PAGE / "node_modules").rglob("package.json"))
-    texts = [license_of(path.parent) for path in packages if is_package(path)]
+    parts = [path.parent for path in packages if is_package(path) and path.parent not in tools]
+    texts = [license_of(path) for path in parts]
     (PAGE / "parts" / "LICENSES.txt").write_text("\n".join(texts), encoding="utf-8")
+
+
+def tools_of(lock: dict[str, Any]) -> set[Path]:
+    """Return the folders of the packages that only make parts: no part contains their code."""
+    return {PAGE / folder for folder, about in lock["packages"].items() if about.get("dev")}
 
 
 def is_package(path: Path) -> bool:

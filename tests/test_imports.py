@@ -120,6 +120,7 @@ LIBRARIES = {
         "adapters/console/browser_requests.py",
         "adapters/recording/type_schemas.py",
         "adapters/stations/",
+        "bigactors/studio/page_requests.py",
     ),
     "mcap": ("adapters/recording/mcap_files.py",),
     "zstandard": ("adapters/recording/decompression.py",),

@@ -8,7 +8,7 @@ from __future__ import annotations
 import asyncio
 import mimetypes
 import struct
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Mapping
 from contextlib import AsyncExitStack, asynccontextmanager, suppress
 from dataclasses import dataclass
 from os import SEEK_END
@@ -18,7 +18,7 @@ from ssl import SSLContext
 from typing import Any, Final
 
 from adapters.addresses import LOOPBACK
-from adapters.console.access import Role, bearer
+from adapters.console.access import Access, Role, bearer
 from adapters.console.browser_requests import MOST_BYTES, PROTOCOL, Hello, Unreadable, read_request
 from adapters.console.browser_session import EVERY, STALLED, Console, Looker
 from adapters.console.coast import coast, window_of
@@ -97,13 +97,24 @@ def lacks_parts() -> bool:
 
 @asynccontextmanager
 async def serving(console: Console, site: Site) -> AsyncIterator[int]:
-    """Serve a console until the context is left; yield the port.
+    """Serve a console until the context is left; yield the port; raises as `listening`."""
+    service = Service(console, site)
+    async with listening(service, site) as port:
+        reading = asyncio.create_task(service.read_on())
+        try:
+            yield port
+        finally:
+            reading.cancel()
+
+
+@asynccontextmanager
+async def listening(service: PageService, site: Site) -> AsyncIterator[int]:
+    """Serve a page until the context is left; yield the port.
 
     Raises:
         OSError: The address cannot be listened on.
         PhysicalError: aiohttp is not installed.
     """
-    service = Service(console, site)
     web = library().web
 
     @web.middleware  # type: ignore[untyped-decorator]  # aiohttp is imported when it is called
@@ -111,12 +122,8 @@ async def serving(console: Console, site: Site) -> AsyncIterator[int]:
         return await service.guard(request, handler)
 
     application = web.Application(middlewares=[guard])
-    application.router.add_get("/", service.index)
-    application.router.add_get("/parts/{path:.*}", service.part)
-    application.router.add_get("/land", service.land)
-    application.router.add_get("/tiles", service.tiles)
-    application.router.add_get("/export/{name}", service.export)
-    application.router.add_get("/ws", service.socket)
+    for path, answer in service.routes().items():
+        application.router.add_get(path, answer)
     bounds = {"keepalive_timeout": IDLE, "lingering_time": LINGERING}
     runner = web.AppRunner(application, access_log=None, logger=quiet_log(), shutdown_timeout=1.0, **bounds)
     await runner.setup()
@@ -125,7 +132,6 @@ async def serving(console: Console, site: Site) -> AsyncIterator[int]:
         server = await _listening(runner.server, site)
         stack.callback(server.close)
         stack.push_async_callback(service.close)
-        stack.callback(asyncio.create_task(service.read_on()).cancel)
         yield server.sockets[0].getsockname()[1]
 
 
@@ -142,29 +148,39 @@ async def _listening(http: Any, site: Site) -> asyncio.Server:
     )
 
 
-class Service:
-    """Answers requests of browsers."""
+class PageService:
+    """Answers requests of browsers for a page and its files; a subclass talks with the page over a websocket.
 
-    def __init__(self, console: Console, site: Site) -> None:
-        self._console = console
+    Arguments:
+        access: The tokens.
+        site: The address, which requests must name.
+        parts: The folders of the page's files, by the beginnings of their addresses; the first has the index.
+        most_bytes: The size of a message.
+    """
+
+    protocol: str = PROTOCOL
+
+    def __init__(self, access: Access, site: Site, parts: Mapping[str, Path], most_bytes: int) -> None:
+        self._access = access
         self._site = site
-        self._files = _files(PAGE)
+        self._parts = {beginning: _files(folder) for beginning, folder in parts.items()}
+        self._most_bytes = most_bytes
         self._connections: set[Any] = set()
 
-    async def read_on(self) -> None:
-        """Read appended messages, until cancelled or the file proves to be no recording."""
-        with suppress(RecordingError, OSError):  # waiting browsers get the history's trouble
-            while True:
-                more = self._console.history.read_on(SLICE)
-                if not more and not self._console.live:
-                    self._console.history.end(BREAKS_OFF)
-                await asyncio.sleep(0 if more else EVERY)
+    def routes(self) -> dict[str, Any]:
+        """Return what answers each path."""
+        files = {f"/{beginning}/{{path:.*}}": self.part for beginning in self._parts}
+        return {"/": self.index, **files, "/land": self.land, "/ws": self.socket}
+
+    async def talk(self, socket: Any, role: Role, name: str) -> None:
+        """Talk with a page until either side ends it."""
+        raise NotImplementedError
 
     async def close(self) -> None:
         """Close the sockets of all browsers."""
         for socket in tuple(self._connections):
             with suppress(ConnectionError):
-                await socket.close(code=1001, message=b"the console has ended")
+                await socket.close(code=1001, message=b"the program has ended")
 
     # --- files
 
@@ -208,12 +224,13 @@ class Service:
 
     async def index(self, _: Any) -> Any:
         """Answer with the page."""
-        return library().web.Response(body=_bytes_of(PAGE / INDEX), content_type="text/html", charset="utf-8")
+        index = next(iter(self._parts.values()))[INDEX]
+        return library().web.Response(body=_bytes_of(index), content_type="text/html", charset="utf-8")
 
     async def part(self, request: Any) -> Any:
         """Answer with a file of the page; only known files are served, so that no path leaves the folder."""
         web = library().web
-        path = self._files.get(request.match_info["path"])
+        path = self._parts[request.path.split("/")[1]].get(request.match_info["path"])
         if path is None:
             raise web.HTTPNotFound
         kind = "text/javascript" if path.suffix == ".js" else mimetypes.guess_type(path.name)[0]
@@ -231,6 +248,73 @@ class Service:
         )
         answer.enable_compression()
         return answer
+
+    def _admit(self, request: Any) -> None:
+        if self._access.role(bearer(request.headers.get("Authorization", ""))) is None:
+            raise library().web.HTTPUnauthorized
+
+    # --- the websocket
+
+    async def socket(self, request: Any) -> Any:
+        """Serve one browser over a websocket."""
+        web = library().web
+        if len(self._connections) >= MOST_LOOKERS:
+            raise web.HTTPServiceUnavailable
+        socket = web.WebSocketResponse(
+            heartbeat=HEARTBEAT, max_msg_size=self._most_bytes, compress=not _is_near(request.remote)
+        )
+        socket.headers.update(HEADERS)
+        await socket.prepare(request)
+        self._connections.add(socket)
+        try:
+            hello = await self._hello(socket)
+            if hello is not None:
+                await self.talk(socket, *hello)
+        except (ConnectionError, TimeoutError):
+            pass  # the browser is gone, or reads nothing
+        finally:
+            self._connections.discard(socket)
+            with suppress(ConnectionError):
+                await socket.close()
+        return socket
+
+    async def _hello(self, socket: Any) -> tuple[Role, str] | None:
+        """Return the role and the name from a client's hello; None, with the socket closed, if it is not valid."""
+        code, why = 4401, b"say hello with a token"
+        with suppress(TimeoutError, Unreadable):
+            async with asyncio.timeout(PATIENCE):
+                message = await socket.receive()
+            said = read_request(message.data) if isinstance(message.data, str) else None
+            if isinstance(said, Hello):
+                if said.protocol != self.protocol:
+                    code, why = 4400, f"this is {self.protocol}".encode()
+                elif (role := self._access.role(said.token)) is not None:
+                    if said.name == "" or is_word(said.name):
+                        return role, said.name
+                    code, why = 4402, b"a name has 1 to 200 characters that can be printed"
+        await socket.close(code=code, message=why)
+        return None
+
+
+class Service(PageService):
+    """Answers requests of a console's browsers."""
+
+    def __init__(self, console: Console, site: Site) -> None:
+        super().__init__(console.access, site, {"parts": PAGE}, MOST_BYTES)
+        self._console = console
+
+    def routes(self) -> dict[str, Any]:
+        """Return what answers each path."""
+        return super().routes() | {"/tiles": self.tiles, "/export/{name}": self.export}
+
+    async def read_on(self) -> None:
+        """Read appended messages, until cancelled or the file proves to be no recording."""
+        with suppress(RecordingError, OSError):  # waiting browsers get the history's trouble
+            while True:
+                more = self._console.history.read_on(SLICE)
+                if not more and not self._console.live:
+                    self._console.history.end(BREAKS_OFF)
+                await asyncio.sleep(0 if more else EVERY)
 
     async def export(self, request: Any) -> Any:
         """Answer with the vehicles' tracks, or with the report of the flight."""
@@ -261,53 +345,8 @@ class Service:
         place = {"Content-Range": f"bytes {start}-{start + len(part) - 1}/{size}"}
         return web.Response(status=206, body=part, headers=place, content_type="application/octet-stream")
 
-    def _admit(self, request: Any) -> None:
-        if self._console.access.role(bearer(request.headers.get("Authorization", ""))) is None:
-            raise library().web.HTTPUnauthorized
-
-    # --- the websocket
-
-    async def socket(self, request: Any) -> Any:
-        """Serve one browser over a websocket."""
-        web = library().web
-        if len(self._connections) >= MOST_LOOKERS:
-            raise web.HTTPServiceUnavailable
-        socket = web.WebSocketResponse(
-            heartbeat=HEARTBEAT, max_msg_size=MOST_BYTES, compress=not _is_near(request.remote)
-        )
-        socket.headers.update(HEADERS)
-        await socket.prepare(request)
-        self._connections.add(socket)
-        try:
-            hello = await self._hello(socket)
-            if hello is not None:
-                await self._talk(socket, *hello)
-        except (ConnectionError, TimeoutError):
-            pass  # the browser is gone, or reads nothing
-        finally:
-            self._connections.discard(socket)
-            with suppress(ConnectionError):
-                await socket.close()
-        return socket
-
-    async def _hello(self, socket: Any) -> tuple[Role, str] | None:
-        """Return the role and the name from a client's hello; None, with the socket closed, if it is not valid."""
-        code, why = 4401, b"say hello with a token"
-        with suppress(TimeoutError, Unreadable):
-            async with asyncio.timeout(PATIENCE):
-                message = await socket.receive()
-            said = read_request(message.data) if isinstance(message.data, str) else None
-            if isinstance(said, Hello):
-                if said.protocol != PROTOCOL:
-                    code, why = 4400, f"this is {PROTOCOL}".encode()
-                elif (role := self._console.access.role(said.token)) is not None:
-                    if said.name == "" or is_word(said.name):
-                        return role, said.name
-                    code, why = 4402, b"a name has 1 to 200 characters that can be printed"
-        await socket.close(code=code, message=why)
-        return None
-
-    async def _talk(self, socket: Any, role: Role, name: str) -> None:
+    async def talk(self, socket: Any, role: Role, name: str) -> None:
+        """Show a browser the console, and do what it asks."""
         looker = Looker(self._console, socket, role, name)
         showing = asyncio.create_task(looker.show())
         hearing = asyncio.create_task(looker.hear())

@@ -14,6 +14,7 @@ from typing import Final
 GROUPS: Final = {
     "write and check missions": {
         "new": "write a small first mission",
+        "studio": "write, check and watch a mission in the browser",
         "check": "explore missions, and decide their properties",
         "simulate": "simulate one run of a mission",
         "show": "print and draw a configuration or a trace",

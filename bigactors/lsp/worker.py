@@ -1,6 +1,7 @@
 """Check the text of an editor in a separate process that can be ended at any time.
 
-It reads the mission and the limits from the standard input, and writes the verdicts to the standard output.
+It reads the mission and the limits from the standard input, and writes the verdicts to the standard output. Without a
+folder for the pages of traces, it writes the whole report instead of pages.
 """
 
 from __future__ import annotations
@@ -29,22 +30,27 @@ def main() -> None:
     source = Source(asked["name"], asked["text"])
     limits = Limits(asked["configurations"], asked["seconds"])
     try:
-        found = checked(source, Path(asked["directory"]), limits, Path(asked["folder"]))
+        result = checked(source, Path(asked["directory"]), limits)
+        found = verdicts(result, Path(asked["folder"])) if "folder" in asked else {"report": result.as_json()}
     except MissionError as error:
         found = {"refused": render_all(error.diagnostics, error.source)}
     json.dump(found, sys.stdout)
 
 
-def checked(source: Source, directory: Path, limits: Limits, folder: Path) -> dict[str, Any]:
-    """Return the verdicts on a text by property, with the pages of their traces; raises MissionError."""
+def checked(source: Source, directory: Path, limits: Limits) -> Checked:
+    """Return a text's mission and its report; raises MissionError."""
     diagnosis = diagnose(read(source), source, directory)
     mission = diagnosis.elaborated
     if mission is None:
         raise MissionError(source, diagnosis.mistakes)
     require_bigactor(mission)
     report = check(mission.initial, mission.properties, limits, notes=mission.notes)
-    result = Checked(source.name, mission, digest_of(mission), report, False)
-    pages = _pages(result, folder)
+    return Checked(source.name, mission, digest_of(mission), report, False)
+
+
+def verdicts(result: Checked, folder: Path) -> dict[str, Any]:
+    """Return the verdicts by property, with the pages of their traces."""
+    report, pages = result.report, _pages(result, folder)
     return {
         "verdicts": {verdict.property.name: _verdict(verdict, pages) for verdict in report.verdicts},
         "configurations": report.configurations,

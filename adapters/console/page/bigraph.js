@@ -1,5 +1,5 @@
 /** The picture of L, which can be moved and enlarged, and its text form. */
-import { html, useEffect, useLayoutEffect, useRef, useSections, useState } from "./ui.js";
+import { html, useEffect, useLayoutEffect, useRef, useSections, useState, useWatched } from "./ui.js";
 
 const SVG = "http://www.w3.org/2000/svg";
 const ELEMENTS = new Set(["svg", "g", "path", "text", "tspan", "use", "defs", "clipPath", "rect", "circle", "ellipse", "line", "polygon", "polyline", "title"]);
@@ -51,6 +51,30 @@ function sizeOf(root) {
   return [0, 0, width, height];
 }
 
+/** The boxes of a picture's nodes by their names: the first text in a box, and in none within it. */
+function nodesOf(root) {
+  const boxes = [...root.querySelectorAll("rect")].map((rect) => ({ rect, at: rect.getBoundingClientRect() })).sort((a, b) => sizeOfBox(a) - sizeOfBox(b));
+  const found = new Map();
+  const taken = new Set();
+  for (const text of root.querySelectorAll("text")) {
+    const { left, right, top, bottom } = text.getBoundingClientRect();
+    const box = boxes.find(({ at }) => covers(at, (left + right) / 2, (top + bottom) / 2));
+    if (!box || taken.has(box)) continue;
+    taken.add(box);
+    found.set(text.textContent, box);
+  }
+  return found;
+}
+
+const sizeOfBox = ({ at }) => at.width * at.height;
+const covers = ({ left, right, top, bottom }, x, y) => left <= x && x <= right && top <= y && y <= bottom;
+
+/** The names of the nodes at a point of the window, the smallest first. */
+function nodesAt(root, x, y) {
+  const there = [...nodesOf(root)].filter(([, { at }]) => covers(at, x, y));
+  return there.sort(([, a], [, b]) => sizeOfBox(a) - sizeOfBox(b)).map(([name]) => name);
+}
+
 /** The caption with the picture's step, which may be earlier than the moment's: L is drawn at most once a second. */
 function captionOf(pictured, step) {
   if (pictured === null) return "the logical model";
@@ -61,17 +85,21 @@ function captionOf(pictured, step) {
 export function Bigraph({ app }) {
   const [bigraph] = useSections(app.store, ["bigraph"], 200);
   const [svg, text, step, drawn] = ["svg", "text", "step", "drawn"].map((key) => bigraph.get(key) ?? null);
-  return html`<${Drawing} svg=${svg} text=${text} called="The bigraph" caption=${(words) => captionOf(words || !svg ? step : drawn, step)} />`;
+  const chosen = useWatched(app.chosen);
+  const known = (name) => ["entities", "places"].some((section) => app.store.section(section).has(name));
+  return html`<${Drawing} svg=${svg} text=${text} called="The bigraph" chosen=${chosen} choose=${(names) => app.chosen.set(names.find(known) ?? null)} caption=${(words) => captionOf(words || !svg ? step : drawn, step)} />`;
 }
 
 /**
  * A picture that can be moved and enlarged, and its text form. At first it is whole, unless its lettering (`lettering` high
- * in its own units) would then be too small to read.
+ * in its own units) would then be too small to read. The node named `chosen` is marked; `choose(names)` is called with the
+ * nodes at a point that is pressed, the smallest first.
  */
-export function Drawing({ svg, text, called, caption, lettering = 0 }) {
+export function Drawing({ svg, text, called, caption, lettering = 0, chosen = null, choose = () => {} }) {
   const frame = useRef(null);
   const view = useRef({ box: null, whole: null });
   const [words, setWords] = useState(false);
+  const pressed = useRef(null);
 
   const show = () => frame.current?.firstElementChild?.setAttribute("viewBox", view.current.box.join(" "));
   /** Show the whole picture, or its middle part if the lettering of the whole would be too small to read. */
@@ -112,6 +140,20 @@ export function Drawing({ svg, text, called, caption, lettering = 0 }) {
     else fit();
   }, [svg, words]);
 
+  useLayoutEffect(() => {
+    const root = frame.current?.firstElementChild;
+    if (!root) return;
+    const mark = chosen === null ? null : nodesOf(root).get(chosen)?.rect;
+    for (const rect of root.querySelectorAll("rect")) rect.classList.toggle("chosen", rect === mark);
+  }, [svg, words, chosen]);
+
+  /** Choose the node that is pressed, unless the picture was moved. */
+  const press = ({ clientX, clientY }) => (pressed.current = [clientX, clientY]);
+  const click = ({ clientX, clientY }) => {
+    const [x, y] = pressed.current ?? [NaN, NaN];
+    if (Math.hypot(clientX - x, clientY - y) <= 4) choose(nodesAt(frame.current.firstElementChild, x, y));
+  };
+
   useEffect(() => {
     const element = frame.current;
     if (!element) return;
@@ -148,6 +190,6 @@ export function Drawing({ svg, text, called, caption, lettering = 0 }) {
     ${words || !svg
       ? html`<pre tabindex="0" key="text">${text}</pre>`
       : html`<div key="picture" class="frame" ref=${frame} tabindex="0" role="img" aria-label=${`${called}: ${text ?? "see the picture"}`} onPointerMove=${drag} onKeyDown=${keys}
-          onPointerDown=${(event) => event.currentTarget.setPointerCapture(event.pointerId)} onDblClick=${fit}></div>`}
+          onPointerDown=${(event) => (event.currentTarget.setPointerCapture(event.pointerId), press(event))} onClick=${click} onDblClick=${fit}></div>`}
   </div>`;
 }

@@ -141,6 +141,11 @@ class Chart {
     return text;
   }
 
+  /** The Leaflet map, for what a page adds to it. */
+  get leaflet() {
+    return this.#surface.map;
+  }
+
   /** The map as it is seen now: a PNG, with the time and the sources. */
   async picture() {
     this.#surface.draw();

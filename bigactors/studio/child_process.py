@@ -1,0 +1,92 @@
+"""Processes beside the studio, which are killed when their text is out of date."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import json
+import sys
+from asyncio.subprocess import DEVNULL, PIPE, Process
+from collections.abc import AsyncIterator
+from typing import Any, Final
+
+MOST_ANSWER: Final = 64 << 20
+"""The most bytes of one answer."""
+
+
+class ChildProcess:
+    """A Python module that runs in a process of its own; it ends when it is killed, or at the end of its input."""
+
+    def __init__(self, process: Process) -> None:
+        self._process = process
+
+    @classmethod
+    async def start(cls, *module: str) -> ChildProcess:
+        """Start a module with its arguments; a module in the user's folder cannot take its place."""
+        line = (sys.executable, "-P", "-m", *module)
+        return cls(
+            await asyncio.create_subprocess_exec(
+                *line, stdin=PIPE, stdout=PIPE, stderr=DEVNULL, limit=MOST_ANSWER
+            )
+        )
+
+    def kill(self) -> None:
+        """End the process at once."""
+        with contextlib.suppress(ProcessLookupError):
+            self._process.kill()
+
+    @property
+    def has_ended(self) -> bool:
+        """Whether the process has ended."""
+        return self._process.returncode is not None
+
+    async def end(self) -> None:
+        """End the process, and wait until nothing of it is left."""
+        self.kill()
+        assert self._process.stdin is not None
+        self._process.stdin.close()
+        await self._process.wait()
+        while await self._output.read(1 << 20):
+            pass
+
+    async def ask_once(self, question: Any) -> Any:
+        """Return the value that the process prints after it has read a question; None if it fails."""
+        try:
+            out, _ = await self._process.communicate(json.dumps(question).encode())
+        finally:
+            self.kill()
+        return json.loads(out) if self._process.returncode == 0 else None
+
+    async def ask(self, question: Any) -> Any:
+        """Return the answer to a question, each a line of JSON; None if the process has ended."""
+        try:
+            await self._write(json.dumps(question).encode() + b"\n")
+            line = await self._output.readline()
+        except (ConnectionError, ValueError):  # the latter for a line over the limit
+            return None
+        return json.loads(line) if line.endswith(b"\n") else None
+
+    async def send_frame(self, message: Any) -> None:
+        """Send a message with the header of the language server protocol; nothing if the process has ended."""
+        data = json.dumps(message).encode()
+        with contextlib.suppress(ConnectionError):
+            await self._write(b"Content-Length: %d\r\n\r\n%b" % (len(data), data))
+
+    async def frames(self) -> AsyncIterator[Any]:
+        """Yield the messages of a language server until it ends."""
+        with contextlib.suppress(asyncio.IncompleteReadError, ConnectionError):
+            while True:
+                header = await self._output.readuntil(b"\r\n\r\n")
+                lines = dict(line.split(b": ", 1) for line in header.split(b"\r\n") if line)
+                size = int(lines[b"Content-Length"])
+                yield json.loads(await self._output.readexactly(size))
+
+    async def _write(self, data: bytes) -> None:
+        assert self._process.stdin is not None
+        self._process.stdin.write(data)
+        await self._process.stdin.drain()
+
+    @property
+    def _output(self) -> asyncio.StreamReader:
+        assert self._process.stdout is not None
+        return self._process.stdout
