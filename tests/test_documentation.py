@@ -43,11 +43,7 @@ LONG = {
 }
 """Pages that fly, or show many commands one after the other."""
 
-<<<<<<< HEAD
-NOT_RUN = 49
-=======
-NOT_RUN = 46
->>>>>>> w-studio
+NOT_RUN = 53
 """How many blocks are only shown; each says why."""
 
 FENCE = re.compile(r"^((?:<!-- [^\n]+ -->\n)*)```(\w*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)

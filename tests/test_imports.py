@@ -89,6 +89,7 @@ LIBRARIES = {
         "bigactors/commands/big/temporal.py",
         "adapters/console/closest_approach.py",  # all pairs of vehicles and targets at once
         "adapters/camera/",
+        "adapters/console/closest_approach.py",  # all pairs of a fleet and its targets
         "adapters/ros/position_messages.py",  # arrays of ROS's messages
         "adapters/simulated/camera.py",
         "physical/extents.py",  # arrays of shapely's coordinates, here and below

@@ -50,7 +50,9 @@ def flight_rows(found: Corridors) -> Iterator[Row]:
         for leg in flight.legs:
             yield _row(f"    {leg.origin} to {leg.to}", leg, shown)
     left = len(found.flights) - MOST_ROWS, len(found.places) - len(shown)
-    for count, what in zip(left, ("on the list of flights", "on the list of places, farther from all flights"), strict=True):
+    for count, what in zip(
+        left, ("on the list of flights", "on the list of places, farther from all flights"), strict=True
+    ):
         if count > 0:
             yield (f"  {count:,} more {what}: see --json", *[""] * (1 + len(shown)))
 
