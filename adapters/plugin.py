@@ -649,7 +649,6 @@ __all__ = [
     "Plugin",
     "Presence",
     "Published",
-    "Readiness",
     "Rebind",
     "Refused",
     "Rejected",

@@ -10,6 +10,7 @@ from bigactors import studio
 
 MODULES: Final = (
     (console, "page/parts/preact.js"),
+    (console, "page/natural.js"),
     (console, "page/ui.js"),
     (console, "page/store.js"),
     (console, "page/bigraph.js"),

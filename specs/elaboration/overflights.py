@@ -45,14 +45,16 @@ def warn_of_overflights(
     """Warn once of each invariant that excludes a vehicle from a place that its flights may cross."""
     asked = tuple(properties)
     watched = {(atom.entity, atom.place) for each in asked for atom in _denied_of(each, PossiblyIn)}
-    forbidden = [(each, *pair) for each in asked for pair in _kept_out(setting, each) if pair not in watched]
+    forbidden = [
+        (each, *kept) for each in asked for kept in _kept_out(setting, each) if kept[:2] not in watched
+    ]
     if not forbidden:
         return
     c = begin()
     legs = frozenset(_legs(c))
     flights = [leg for leg in sorted(legs) if setting.signature[setting.kind(leg[0])].driven]
-    for invariant, entity, place in forbidden:
-        moving = _carriers(c, legs, entity)
+    for invariant, entity, place, directly in forbidden:
+        moving = frozenset({entity}) if directly else _carriers(c, legs, entity)
         ways = (_crossing(c, leg, legs, place) for leg in flights if leg[0] in moving)
         found = next((way for way in ways if way is not None), None)
         if found is not None:
@@ -70,11 +72,11 @@ def _line(findings: Findings, number: int) -> s.Span:
     return s.Span(start + len(text) - len(text.lstrip()), start + len(text.rstrip()))
 
 
-def _kept_out(setting: Setting, asked: Property) -> Iterator[tuple[Name, Name]]:
-    """Yield the pairs of entity and place that an invariant keeps apart in P."""
+def _kept_out(setting: Setting, asked: Property) -> Iterator[tuple[Name, Name, bool]]:
+    """Yield each entity with a place from which an invariant excludes it in P, and whether its cargo does not count."""
     for atom in _denied_of(asked, Inside):
         if atom.actually and atom.node in setting.kinds and atom.place in setting.kinds:
-            yield atom.node, atom.place
+            yield atom.node, atom.place, atom.directly
 
 
 def _carriers(c: Configuration, legs: Iterable[Leg], entity: Name) -> frozenset[Name]:

@@ -140,7 +140,7 @@ def test_after_an_interruption_one_checkpoint_is_written_at_most(monkeypatch, tm
 
 def test_the_time_that_the_first_explorer_took_is_not_given_twice(monkeypatch):
     mission = load_mission("takeover")
-    monkeypatch.setattr(CHECK, "PATIENCE", 0.0)
+    monkeypatch.setattr(CHECK, "PATIENCE", 0.01)
     given = []
     explore_by = CHECK.explore_by
 

@@ -12,7 +12,7 @@ from specs.standard_signature import STANDARD
 
 ROOT = Path(__file__).parents[2]
 MISSIONS = ROOT / "specs" / "missions"
-OWN_SIGNATURE = re.compile(r"^signature \{.*?^\}\n", re.MULTILINE | re.DOTALL)
+OWN_SIGNATURE = re.compile(r"^signature (?:\{.*?^\}|standard)\n", re.MULTILINE | re.DOTALL)
 TUGS = """
 world {
   basin0: Location = box (37.04, -8.59) (36.94, -8.79)

@@ -1,5 +1,6 @@
 /** Shared parts of the page: preact, hooks that watch the store, and observable values. */
 import { html, render, Component, useCallback, useEffect, useLayoutEffect, useMemo, useRef, useState } from "./parts/preact.js";
+import { byName } from "./natural.js";
 
 export { html, render, Component, useCallback, useEffect, useLayoutEffect, useMemo, useRef, useState };
 
@@ -128,4 +129,4 @@ export function memo(draw) {
   };
 }
 
-export { byName } from "./natural.js";
+export { byName };
