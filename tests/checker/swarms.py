@@ -80,8 +80,8 @@ AROUND = (
     'environment { says "go" to r1 says "go" to r0 }',
     "environment { mesh drops and returns }",
     "environment { robot0 vanishes robot1 vanishes }",
-    "environment { observe may miss Robot }",
     "environment { robot0 leaves mesh and returns robot1 leaves mesh and returns }",
+    "environment { observe may miss Robot }",
 )
 
 

@@ -110,7 +110,7 @@ def test_a_check_without_compiled_loops_decides_within_its_limit(tmp_path):
     """See the hook of pre-commit, after an installation, on one core and on all."""
     for cores in ({0}, os.sched_getaffinity(0)):
         env = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path / str(len(cores))), "PYTHONPATH": str(ROOT)}
-        words = ("check", "--no-traces", "--max-time", "10", "oil_spill_timed")
+        words = ("check", "--no-traces", "--max-time", "60", "oil_spill_timed")
         done = subprocess.run(
             [sys.executable, "-m", "bigactors", *words],
             env=env,
