@@ -108,7 +108,7 @@ def source_area(source: Source) -> GeodesicArea:
 
 
 @lru_cache(maxsize=MEMO)
-def flattening(source: Source) -> float:
+def circle_sagitta(source: Source) -> float:
     """Return the metres by which a circle leaves the polygon that stands for it; 0 if a source is no circle.
 
     A circle is any polygon of many corners that are about as far from its middle; its edges are its chords.

@@ -8,7 +8,7 @@ from typing import Final, NamedTuple
 import shapely
 
 from physical.frame import geod, rounded
-from physical.geodesic_areas import area_of, disc_of, flattening, projected
+from physical.geodesic_areas import area_of, circle_sagitta, disc_of, projected
 from physical.geodesic_distances import (
     MOST_KNOWN,
     greatest_distance_of,
@@ -46,7 +46,7 @@ def doubt(a: RegionPart, b: RegionPart) -> float:
 
 def bulge(part: RegionPart) -> float:
     """Return the metres by which the circles among a part's sources leave their polygons."""
-    return max(flattening(source) for source in part.sources)
+    return max(circle_sagitta(source) for source in part.sources)
 
 
 def _are_points(a: RegionPart, b: RegionPart) -> bool:

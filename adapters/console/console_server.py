@@ -8,6 +8,7 @@ from __future__ import annotations
 import asyncio
 import mimetypes
 import struct
+from abc import ABC, abstractmethod
 from collections.abc import AsyncIterator, Mapping
 from contextlib import AsyncExitStack, asynccontextmanager, suppress
 from dataclasses import dataclass
@@ -148,7 +149,7 @@ async def _listening(http: Any, site: Site) -> asyncio.Server:
     )
 
 
-class PageService:
+class PageService(ABC):
     """Answers requests of browsers for a page and its files; a subclass talks with the page over a websocket.
 
     Arguments:
@@ -172,9 +173,9 @@ class PageService:
         files = {f"/{beginning}/{{path:.*}}": self.part for beginning in self._parts}
         return {"/": self.index, **files, "/land": self.land, "/ws": self.socket}
 
+    @abstractmethod
     async def talk(self, socket: Any, role: Role, name: str) -> None:
         """Talk with a page until either side ends it."""
-        raise NotImplementedError
 
     async def close(self) -> None:
         """Close the sockets of all browsers."""

@@ -9,7 +9,7 @@ from oracles.sampled_geodesics import away, between, feet, is_in, metres, points
 from scale import seeds
 
 from physical import RegionError, box, circle, point, polygon
-from physical.geodesic_areas import CHORD, area_of, disc_of, flattening, source_area
+from physical.geodesic_areas import CHORD, area_of, circle_sagitta, disc_of, source_area
 from physical.regions import FaceCover, RegionPart
 
 
@@ -113,11 +113,11 @@ def test_a_region_over_a_pole_or_too_large_is_refused():
 def test_a_polygon_with_few_corners_or_with_unequal_radii_is_no_circle():
     drawn = circle((37.1, -8.6), 1_000.0)
     dented = polygon([(37.1, -8.6), *drawn.vertices[2:]])
-    assert flattening(drawn) == pytest.approx(1.2, abs=0.01)
+    assert circle_sagitta(drawn) == pytest.approx(1.2, abs=0.01)
     for other in (
         circle((37.1, -8.6), 1_000.0, 8),
         dented,
         box((37.0, -8.7), (37.1, -8.6)),
         point(37.0, -8.6),
     ):
-        assert flattening(other) == 0.0
+        assert circle_sagitta(other) == 0.0

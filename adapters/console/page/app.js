@@ -1,6 +1,6 @@
 /** The operator's console: one screen with the content of a recording and the actions of the operator. */
 import { Find } from "./find.js";
-import { first, html, render, memo, kept, owed, useEffect, useLayoutEffect, useRef, useSections, useWatched, Watched } from "./ui.js";
+import { dress, first, html, render, memo, kept, owed, useEffect, useLayoutEffect, useRef, useSections, useWatched, Watched } from "./ui.js";
 import { Alert } from "./alert.js";
 import { Announcer } from "./announce.js";
 import { Brief, Cards, worstFirst } from "./cards.js";
@@ -95,16 +95,8 @@ class App {
     });
     for (const watched of [this.chosen, this.following, this.only]) watched.on(() => this.#follow());
     this.measuring.on((on) => this.map?.measure(on));
-    const dark = matchMedia("(prefers-color-scheme: dark)");
-    const dress = () => this.theme.set(this.look.value || (dark.matches ? "dark" : "light"));
-    dark.addEventListener("change", dress);
-    this.look.on(dress);
-    this.theme.on((theme) => {
-      document.documentElement.dataset.theme = theme;
-      this.map?.setTheme(theme);
-    });
-    dress();
-    document.documentElement.dataset.theme = this.theme.value;
+    dress(this.look, this.theme);
+    this.theme.on((theme) => this.map?.setTheme(theme));
     owed.on(() => queueMicrotask(this.#tellDrawn));
   }
 

@@ -38,7 +38,7 @@ export function Find({ app }) {
     input.current.blur();
   };
   const go = (match) => {
-    if (!match) return app.tell(`Nothing here is called “${text}”, and no event tells of it.`);
+    if (!match) return app.tell(`Nothing here is called “${text}”, and in no event.`);
     if (match.name !== undefined) app.find(match.name);
     else app.goTo(match.time);
     leave();

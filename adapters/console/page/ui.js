@@ -130,3 +130,15 @@ export function memo(draw) {
 }
 
 export { byName };
+
+/** Dress the page: in the chosen theme (`look`), or else in that of the system; `theme` has the one that it wears. */
+export const dress = (look, theme) => {
+  const dark = matchMedia("(prefers-color-scheme: dark)");
+  const choose = () => theme.set(look.value || (dark.matches ? "dark" : "light"));
+  const wear = () => { document.documentElement.dataset.theme = theme.value; };
+  dark.addEventListener("change", choose);
+  look.on(choose);
+  theme.on(wear);
+  choose();
+  wear();
+};

@@ -1,5 +1,5 @@
 /** The studio: a mission's text, its verdicts, its map and bigraph, and an explorer of its runs. */
-import { Field, html, kept, memo, render, useEffect, useRef, useWatched, Watched } from "/parts/ui.js";
+import { dress, Field, html, kept, memo, render, useEffect, useRef, useWatched, Watched } from "/parts/ui.js";
 import { Bigraph } from "/parts/bigraph.js";
 import { Store } from "/parts/store.js";
 import { Explorer } from "./explorer.js";
@@ -48,16 +48,8 @@ class Studio {
   map = null;
 
   constructor() {
-    const dark = matchMedia("(prefers-color-scheme: dark)");
-    const dress = () => this.theme.set(this.look.value || (dark.matches ? "dark" : "light"));
-    dark.addEventListener("change", dress);
-    this.look.on(dress);
-    this.theme.on((theme) => {
-      document.documentElement.dataset.theme = theme;
-      this.map?.setTheme(theme);
-    });
-    dress();
-    document.documentElement.dataset.theme = this.theme.value;
+    dress(this.look, this.theme);
+    this.theme.on((theme) => this.map?.setTheme(theme));
     this.chosen.on((name) => {
       this.editor?.choose(name);
       this.map?.choose(name);
@@ -310,7 +302,7 @@ function Flight({ app, unsaved }) {
     <button type="button" class="fly" disabled=${why !== "" || flight.state === "starting"} title=${why || "with simulated vehicles, ten times as fast, in the operator's console"} onClick=${app.fly}>${flight.state === "starting" ? "Starting …" : "Fly"}</button>`;
 }
 
-/** What went wrong, in plain words, with what can be done about it. */
+/** The last error, with its remedy. */
 function Trouble({ app }) {
   const problem = useWatched(app.problem);
   const other = useWatched(app.other);

@@ -4,7 +4,7 @@ import { html, useWatched } from "/parts/ui.js";
 export const MARKS = { holds: "✓", violated: "✗", incomplete: "?" };
 const count = (number, noun) => `${number.toLocaleString("en")} ${noun}${number === 1 ? "" : "s"}`;
 
-/** What stands in the margin of the text: verdicts at their properties, and what is never reached. */
+/** The margin of the text: verdicts at their properties, and marks at unreached lines. */
 export function marksOf({ properties, coverage }) {
   const verdicts = properties.map(({ line, verdict, name, violations }) => ({ line, sort: verdict, sign: MARKS[verdict], title: `${name}: ${violations[0]?.message ?? verdict}`, property: name }));
   const gaps = coverage?.complete ? coverage.gaps : [];
