@@ -37,8 +37,8 @@ export function Find({ app }) {
     setAt(0);
     input.current.blur();
   };
-  const go = (match) => {
-    if (!match) return app.tell(`Nothing here is called “${text}”, and in no event.`);
+  const go = (match, typed) => {
+    if (!match) return app.tell(`Nothing here is called “${typed}”, and no event mentions it.`);
     if (match.name !== undefined) app.find(match.name);
     else app.goTo(match.time);
     leave();
@@ -54,7 +54,8 @@ export function Find({ app }) {
   useEffect(() => setAt(0), [text]);
   const submit = (event) => {
     event.preventDefault();
-    if (text.trim()) go(found[at]);
+    const typed = input.current.value; // the last key may not be drawn yet
+    if (typed.trim()) go(matches(app.store, typed)[typed === text ? at : 0], typed);
   };
   return html`<form class="find" role="search" onSubmit=${submit}>
     <input id="find" ref=${input} role="combobox" aria-label="find a vehicle, MMSI, place or event" aria-expanded=${String(found.length > 0)} aria-controls="found" aria-autocomplete="list"
