@@ -159,12 +159,13 @@ def messages_of(times: Times) -> tuple[MessageDates, ...]:
             if label.rule == "req_snd":
                 new = (each.request for each in step.transition.target.eta.all() if each not in known)
                 for request in (each for each in new if isinstance(each, SND)):
-                    sent.setdefault((request.agent, request.to), set()).add(TakenStep(place, at))
+                    for key in times.alike((request.agent, request.to)):
+                        sent.setdefault(key, set()).add(TakenStep(place, at))
             elif isinstance(label.about, SND):
-                key = (label.about.agent, label.about.to)
-                heard.setdefault(key, set()).add(TakenStep(place, at))
                 interval = timed_by(situation, step).interval
-                takes[key] = _both(takes.get(key, interval), interval)
+                for key in times.alike((label.about.agent, label.about.to)):
+                    heard.setdefault(key, set()).add(TakenStep(place, at))
+                    takes[key] = _both(takes.get(key, interval), interval)
     keys = [key for key in sent if key in heard]
     spans = times.spans([*(sent[key] for key in keys), *(heard[key] for key in keys)])
     dates = zip(keys, spans, spans[len(keys) :], strict=False)

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence, Set
+from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass
-from typing import Final, NamedTuple, Protocol
+from typing import Final, NamedTuple, Protocol, TypeVar
 
 from checker.engines.timed.first_runs import TimedRun
 from checker.properties.inspections import InTime
@@ -79,6 +79,10 @@ class TimelockRun:
 
     run: TimedRun
     steps: int
+
+
+Named = TypeVar("Named", bound=Hashable)
+"""An event as a report tells it: a flight, or the two agents of a message."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -160,8 +164,11 @@ class Times(Protocol):
     def in_original_names(self, place: int, by: Transition | None, text: str) -> str:
         """Return a text about a configuration in the names of the run to it that `run_before` returns."""
 
-    def alike(self, flight: VehicleFlight) -> Iterable[VehicleFlight]:
-        """Return the flights that have the same dates as one, itself included: exchanges of names map it to them."""
+    def alike(self, event: Named) -> Iterable[Named]:
+        """Return the events that have the same dates as one, itself included: exchanges of names map it to them.
+
+        What is reported of an event by its names is to be reported of each of these.
+        """
 
     def unbounded(self) -> Set[str]:
         """Return the rules of agents' in-turn steps that have no upper time bound."""

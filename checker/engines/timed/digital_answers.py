@@ -12,9 +12,9 @@ from checker.engines.timed.answers import (
     NO_SPAN,
     DateSpan,
     FirstMoments,
+    Named,
     TakenStep,
     TimelockRun,
-    VehicleFlight,
     WaitAnswer,
 )
 from checker.engines.timed.digital_graph import Timeline
@@ -108,9 +108,9 @@ class DigitalAnswers:
         """Return a text about a configuration as it is: nothing is exchanged."""
         return text
 
-    def alike(self, flight: VehicleFlight) -> tuple[VehicleFlight, ...]:
-        """Return the flight: nothing is exchanged."""
-        return (flight,)
+    def alike(self, event: Named) -> tuple[Named, ...]:
+        """Return the event: nothing is exchanged."""
+        return (event,)
 
     def _first(self, is_end: object) -> TimedRun:
         run = first_run(0, self.edges.__getitem__, is_end)  # type: ignore[arg-type]

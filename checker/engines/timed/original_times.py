@@ -12,10 +12,10 @@ from dataclasses import replace
 from checker.engines.timed.answers import (
     DateSpan,
     FirstMoments,
+    Named,
     TakenStep,
     TimelockRun,
     Times,
-    VehicleFlight,
     WaitAnswer,
 )
 from checker.engines.timed.exchanged_clocks import ClockExchange
@@ -181,9 +181,14 @@ class OriginalTimes:
         """Return for each set of steps of representatives the span of dates at which one of them is taken."""
         return self.shown.spans(steps)
 
-    def alike(self, flight: VehicleFlight) -> Iterator[VehicleFlight]:
-        """Yield the flights that exchanges map a flight to, itself first."""
-        return self.exchange.orbit(flight, lambda each, renaming: renaming.value(each))
+    def alike(self, event: Named) -> Iterator[Named]:
+        """Yield the events that exchanges map an event to, itself first."""
+
+        def image(each: Named, renaming: Renaming) -> Named:
+            found: Named = renaming.value(each)
+            return found
+
+        return self.exchange.orbit(event, image)
 
     # --- endurance and timelocks
 

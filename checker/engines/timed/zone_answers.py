@@ -14,9 +14,9 @@ from checker.engines.made_on_access import MadeOnAccess
 from checker.engines.timed.answers import (
     DateSpan,
     FirstMoments,
+    Named,
     TakenStep,
     TimelockRun,
-    VehicleFlight,
     WaitAnswer,
 )
 from checker.engines.timed.digital_answers import control_pairs
@@ -277,9 +277,9 @@ class ZoneTimes:
         """Return a text about a configuration as it is: nothing is exchanged."""
         return text
 
-    def alike(self, flight: VehicleFlight) -> tuple[VehicleFlight, ...]:
-        """Return the flight: nothing is exchanged."""
-        return (flight,)
+    def alike(self, event: Named) -> tuple[Named, ...]:
+        """Return the event: nothing is exchanged."""
+        return (event,)
 
     def _targets(self, row: int) -> dict[int, int]:
         """Return the target row of each in-turn step, from the reached locations of a row."""

@@ -204,6 +204,9 @@ BOTH_HOME = [
     when(of_all(2, there, Or)),
     replace(within(3, of_all(2, there, Or), of_all(2, lambda each: there(each, "dock0"), Or)), name="home"),
 ]
+FIRST_IS_TOLD = (
+    'BigActor base hosted_at gcs0 with_behavior { react { case ("at", who) => send "go" to who } }'
+)
 MISSIONS = {
     "one queue": (mission(LOOKS, 3, TIMED_CONTROL).initial, {}, ARRIVALS),
     "no queue": (mission(LOOKS, 2, "control timed").initial, {}, BOTH_HOME),
@@ -228,6 +231,11 @@ MISSIONS = {
         mission(*ORBITS["answered"][:1], 3, f"control timed\n{LISTENS}").initial,
         {"messages": (("mesh", Interval(1, 2)),), "clauses": each(Sayable, (1, 2), (1, 2), (1, 2))},
         [when(of_all(3, ended)), within(3, of_all(3, ended, Or))],
+    ),
+    "answers to whoever was first": (
+        mission('send ("at", SELF) to base', 2, f"control timed\n{FIRST_IS_TOLD}").initial,
+        {"messages": (("mesh", Interval(1, 2)),)},
+        [],
     ),
     "time stops": (
         mission('loop { send "go" to SELF react { case "go" => skip } }', 2).initial,
