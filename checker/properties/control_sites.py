@@ -2,7 +2,8 @@
 
 from functools import lru_cache
 
-from semantics.behaviours.program import Program, reachable
+from semantics.analysis.traversal import reachable
+from semantics.behaviours.program import Program
 from semantics.behaviours.statements import Block, ControlBy, Spawn
 from semantics.races.relevance import Names, hosts_of, instances
 from semantics.state.configuration import Configuration

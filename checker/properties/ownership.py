@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import assert_never
 
+from semantics.analysis.traversal import expressions_of, reachable
 from semantics.behaviours.expressions import (
     Apply,
     Expression,
@@ -22,7 +23,6 @@ from semantics.behaviours.expressions import (
     Variable,
 )
 from semantics.behaviours.observations import QueryOperator
-from semantics.behaviours.program import expressions_of, reachable
 from semantics.behaviours.reaction_rules import Pattern, Reaction, Term
 from semantics.behaviours.statements import ControlBy, Display, Migrate, Observe, Send, Spawn, Statement
 from semantics.races.relevance import instances

@@ -16,12 +16,11 @@ from typing import NamedTuple
 
 from checker.reduction.footprint_slots import NOTHING, SlotFootprint, joined
 from checker.reduction.footprints import Footprints
-from checker.reduction.overapproximation import Overapproximation
 from checker.reduction.possible_values import Roles
 from checker.reduction.race_footprints import Marks
-from checker.reduction.static_messages import ConstantMessage, message_of
-from semantics.behaviours.expressions import Fault
-from semantics.behaviours.program import reachable
+from semantics.analysis.overapproximation import Overapproximation
+from semantics.analysis.traversal import reachable
+from semantics.behaviours.expressions import Fault, Literal
 from semantics.behaviours.reaction_rules import Reaction
 from semantics.behaviours.statements import ControlBy, Migrate, Observe, React, Send, Spawn, Statement
 from semantics.environment import Says
@@ -226,7 +225,7 @@ class Actors:
                 return self._of_reaction(agent, reaction)
             case SND(_, to, message):
                 there = to in self.roles.agents
-                return self.footprints.post(agent, hosts, to, ConstantMessage(message)) if there else NOTHING
+                return self.footprints.post(agent, hosts, to, Literal(message)) if there else NOTHING
             case MGR(_, to):
                 return self.footprints.migrate(agent, hosts, to)
             case _:
@@ -247,9 +246,7 @@ class Actors:
                 return self._control(agent, statement)
             case Send(message, to):
                 receivers = self.roles.receivers(agent, to)
-                return joined(
-                    self.footprints.post(agent, hosts, each, message_of(message)) for each in receivers
-                )
+                return joined(self.footprints.post(agent, hosts, each, message) for each in receivers)
             case Migrate(host):
                 entities = self.roles.entities(agent, host)
                 return joined(self.footprints.migrate(agent, hosts, each) for each in entities)

@@ -4,7 +4,8 @@ from collections.abc import Iterator
 from dataclasses import fields, is_dataclass
 from typing import Any
 
-from checker.reduction.static_messages import Unknown, may_take
+from semantics.analysis.possible_messages import UNKNOWN, may_take
+from semantics.analysis.traversal import bindings
 from semantics.behaviours.expressions import Apply, Expression, Literal, RouteOf, Variable
 from semantics.behaviours.patterns import Exactly, variables
 from semantics.behaviours.program import Program
@@ -14,8 +15,6 @@ from semantics.behaviours.statements import (
     ChooseFrom,
     Display,
     For,
-    ForEach,
-    Match,
     React,
     Send,
     Spawn,
@@ -49,7 +48,7 @@ def ordered(c: Configuration) -> str | None:
             return f"'first' takes names in their order{line}"
         if isinstance(statement, React):
             guarded = [case for case in statement.cases if case.guard is not None]
-            if any(unordered or (told and may_take(case.pattern, Unknown())) for case in guarded):
+            if any(unordered or (told and may_take(case.pattern, UNKNOWN)) for case in guarded):
                 return f"a guard is tried on messages in the order of names, and may fail{line}"
     return None
 
@@ -68,15 +67,9 @@ def _routes(program: Program) -> frozenset[str]:
 
 def _given(statement: Statement, program: Program) -> Iterator[tuple[str, Expression | None]]:
     """Yield the variables that a statement binds, each with its expression, None for a value unknown from the text."""
-    match statement:
-        case Assign(variable, value):
-            yield variable, value
-        case Call(behaviour, arguments) | Spawn(_, _, behaviour, arguments):
-            yield from zip(program.behaviours[behaviour].parameters, arguments, strict=True)
-        case ForEach(variable) | ChooseFrom(variable):
-            yield variable, None
-        case React(cases) | Match(_, cases):
-            yield from ((variable, None) for case in cases for variable in variables(case.pattern))
+    is_known = isinstance(statement, Assign | Call | Spawn)
+    for each in bindings(program, statement):
+        yield from ((variable, each.expression if is_known else None) for variable in variables(each.pattern))
 
 
 def _is_route(value: Expression, routes: frozenset[str]) -> bool:

@@ -7,21 +7,11 @@ sender had: agents first agree, then observe and move.
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from checker.reduction.overapproximation import Names
 from checker.reduction.possible_values import Roles
+from semantics.analysis.overapproximation import Names
+from semantics.analysis.traversal import blocks
 from semantics.behaviours.program import Program
-from semantics.behaviours.statements import (
-    Block,
-    Call,
-    For,
-    Loop,
-    Observe,
-    React,
-    Send,
-    Spawn,
-    Statement,
-    branches,
-)
+from semantics.behaviours.statements import Block, Observe, React, Send, Spawn, Statement
 from semantics.races.relevance import tells
 from semantics.state.configuration import Configuration
 from semantics.state.requests import OBS
@@ -92,18 +82,7 @@ class _Lives:
                 observed = True
         told = False
         for _ in range(2):  # a loop's body runs again after its own observations
-            found = [self.through(block, observed=observed) for block in self._blocks(statement)]
+            found = [self.through(block, observed=observed) for block in blocks(self.program, statement)]
             observed |= any(each.observed for each in found)
             told |= any(each.told for each in found)
         return _Passed(observed, told)
-
-    def _blocks(self, statement: Statement) -> tuple[Block, ...]:
-        match statement:
-            case Call(behaviour):
-                return (self.program.behaviours[behaviour].body,)
-            case Loop(body):
-                return (body,)
-            case For(_, _, each):
-                return ((each,),)
-            case _:
-                return branches(statement)

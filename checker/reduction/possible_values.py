@@ -7,8 +7,9 @@ assign. A value may be any name, unless it is a constant, a host, or the observe
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 
-from checker.reduction.overapproximation import Names, Overapproximation, transitive_closure
-from checker.reduction.static_messages import may_take, message_of
+from semantics.analysis.overapproximation import Names, Overapproximation, transitive_closure
+from semantics.analysis.possible_messages import may_take
+from semantics.analysis.traversal import reachable
 from semantics.behaviours.expressions import (
     Apply,
     Expression,
@@ -23,7 +24,6 @@ from semantics.behaviours.expressions import (
 )
 from semantics.behaviours.observations import All, Nodes, Of, Query
 from semantics.behaviours.patterns import Anything, Elements, Pattern, variables
-from semantics.behaviours.program import reachable
 from semantics.behaviours.statements import (
     Assign,
     Call,
@@ -208,7 +208,7 @@ class Roles:
                 self._bind(agent, variable, None)
             return
         for speaker, message in self._messages():
-            if may_take(pattern, message_of(message)):
+            if may_take(pattern, message):
                 self._take(agent, pattern, speaker, message)
 
     def _take(self, agent: Name, pattern: Pattern, speaker: Name, message: Expression) -> None:

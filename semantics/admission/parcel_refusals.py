@@ -2,12 +2,12 @@
 
 from collections.abc import Iterator, Sequence
 
-from semantics.admission.abstract_values import Abstract
 from semantics.admission.program_points import is_point
-from semantics.admission.value_flow import PossibleBehaviour, ValueFlow
+from semantics.analysis.abstract_values import Abstract
+from semantics.analysis.traversal import reachable
+from semantics.analysis.value_flow import PossibleBehaviour, ValueFlow
 from semantics.behaviours.expressions import Fault, QueryOf
 from semantics.behaviours.observations import All, Nodes, Query
-from semantics.behaviours.program import reachable
 from semantics.behaviours.statements import ControlBy, Migrate, Observe, Send, Statement
 from semantics.behaviours.values import Route
 from semantics.environment import Says

@@ -503,3 +503,9 @@ def leaves(expression: Any) -> Iterator[Expression]:
             yield from leaves(argument)
         case Literal() | Variable() | Host() | Self():
             yield expression
+
+
+def leaf_of(query: QueryOf) -> tuple[Expression, ...]:
+    """Return the expression at the leaf of a query, if it has one."""
+    inner = query.argument
+    return () if inner is None else leaf_of(inner) if isinstance(inner, QueryOf) else (inner,)

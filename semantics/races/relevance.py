@@ -10,6 +10,7 @@ from functools import lru_cache
 from itertools import product
 from math import prod
 
+from semantics.analysis.traversal import BoundPattern, bindings, expressions_of, reachable
 from semantics.behaviours.expressions import (
     OPERATORS,
     Apply,
@@ -27,20 +28,14 @@ from semantics.behaviours.expressions import (
     reads_host,
 )
 from semantics.behaviours.patterns import variables
-from semantics.behaviours.program import Program, expressions_of, reachable
+from semantics.behaviours.program import Program
 from semantics.behaviours.reaction_rules import NodeTerm, Pattern, Reaction
 from semantics.behaviours.statements import (
-    Assign,
-    Call,
-    Case,
     ChooseFrom,
     ControlBy,
     For,
-    ForEach,
-    Match,
     Migrate,
     Observe,
-    React,
     Send,
     Spawn,
     Statement,
@@ -139,25 +134,17 @@ def _passed_on(program: Program, statement: Statement, told: Names) -> Names:
             return _read(host).union(*map(_read, arguments))
         case Migrate(host):
             return _read(host) if HOSTED in told else frozenset()
-        case Assign(variable, source) | For(source, variable, _) | ChooseFrom(variable, source, _):
-            return _read(source) if variable in told else frozenset()
-        case ForEach(variable, rest, _):
-            return frozenset({rest} if variable in told else ())
-        case Match(source, cases):
-            return _read(source) if _binds(cases, told) else frozenset()
-        case React(cases):
-            return frozenset({HEARD} if _binds(cases, told) else ())
         case Observe(query):
             return _read(query) if HEARD in told else frozenset()
-        case Call(behaviour, arguments):
-            given = zip(program.behaviours[behaviour].parameters, arguments, strict=True)
-            return frozenset[Name]().union(*(_read(each) for name, each in given if name in told))
         case _:
-            return frozenset()
+            found = (
+                each for each in bindings(program, statement) if not told.isdisjoint(variables(each.pattern))
+            )
+            return frozenset[Name]().union(*map(_source, found))
 
 
-def _binds(cases: Iterable[Case], told: Names) -> bool:
-    return any(not told.isdisjoint(variables(case.pattern)) for case in cases)
+def _source(binding: BoundPattern) -> Names:
+    return frozenset({HEARD}) if binding.expression is None else _read(binding.expression)
 
 
 def tells(program: Program, reach: Iterable[int]) -> bool:

@@ -6,10 +6,10 @@ from itertools import product
 from math import prod
 from typing import NamedTuple
 
-from semantics.admission.abstract_values import Abstract
-from semantics.admission.value_flow import ValueFlow, flow_of
+from semantics.analysis.abstract_values import Abstract
+from semantics.analysis.traversal import reachable
+from semantics.analysis.value_flow import ValueFlow, flow_of
 from semantics.behaviours.expressions import Fault
-from semantics.behaviours.program import reachable
 from semantics.behaviours.reaction_rules import NodeTerm, PlaceTerm, Reaction
 from semantics.behaviours.statements import ControlBy
 from semantics.state.configuration import Configuration

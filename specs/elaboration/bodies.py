@@ -6,11 +6,12 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
+from semantics.analysis.traversal import reachable
+from semantics.analysis.unpaced_loops import unpaced
 from semantics.behaviours.commands import COMMANDS
 from semantics.behaviours.expressions import Expression, Literal
-from semantics.behaviours.program import Behaviour, Program, reachable
+from semantics.behaviours.program import Behaviour, Program
 from semantics.behaviours.statements import Block, Loop
-from semantics.behaviours.unpaced_loops import unpaced
 from specs import syntax as s
 from specs.codes import Code
 from specs.elaboration.initial_actors import InitialActor

@@ -12,7 +12,7 @@ from typing import TypeVar
 
 from physical import Geometry
 from physical.extents import extent, least_distance, span
-from semantics.behaviours.program import reachable
+from semantics.analysis.traversal import reachable
 from semantics.behaviours.statements import ControlBy
 from semantics.environment import Appears, Drifts
 from semantics.properties.kinds import PropertyKind

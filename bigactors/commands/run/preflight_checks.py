@@ -19,8 +19,8 @@ from adapters.plugin import Plugin, Preflight, preflights
 from bigactors.commands.run.geofence import placements_of
 from bigactors.mistakes import Mistake
 from bigactors.terminal import tell
-from checker.reduction.overapproximation import Overapproximation
 from checker.reduction.possible_values import Roles
+from semantics.analysis.overapproximation import Overapproximation
 from semantics.behaviours.expressions import Fault
 from semantics.behaviours.reaction_rules import CONTROL_AUTHORITY, LinkTerm, NodeTerm, PlaceTerm, Reaction
 from semantics.behaviours.statements import ControlBy

@@ -10,7 +10,8 @@ from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from typing import Final, TypeGuard
 
-from semantics.admission.abstract_values import (
+from semantics.admission.program_points import once
+from semantics.analysis.abstract_values import (
     ANYTHING,
     NOTHING,
     NUMBER,
@@ -26,7 +27,7 @@ from semantics.admission.abstract_values import (
     tuple_of,
     word,
 )
-from semantics.admission.program_points import once
+from semantics.analysis.traversal import reachable
 from semantics.behaviours.expressions import (
     Apply,
     Expression,
@@ -40,7 +41,7 @@ from semantics.behaviours.expressions import (
     Variable,
 )
 from semantics.behaviours.observations import Observation
-from semantics.behaviours.program import Program, reachable
+from semantics.behaviours.program import Program
 from semantics.behaviours.statements import (
     Assign,
     Block,
