@@ -25,7 +25,7 @@ from semantics.behaviours.expressions import (
 from semantics.behaviours.observations import QueryOperator
 from semantics.behaviours.reaction_rules import Pattern, Reaction, Term
 from semantics.behaviours.statements import ControlBy, Display, Migrate, Observe, Send, Spawn, Statement
-from semantics.races.relevance import instances
+from semantics.races.relevance import requested
 from semantics.state.configuration import Configuration
 from semantics.state.setting import Scheduler
 from semantics.state.signature import Name
@@ -85,7 +85,10 @@ def footprint(c: Configuration, agent: Name) -> Footprint:
 
 
 class _Text:
-    """The possible statements, reactions and tests of one agent."""
+    """The possible statements, reactions and tests of one agent.
+
+    Only constants name something here, as in the paper. The value flow is finer, and the reductions use it.
+    """
 
     def __init__(self, c: Configuration, agent: Name) -> None:
         self.c = c
@@ -122,7 +125,7 @@ class _Text:
         controls = [statement for statement in self.statements if isinstance(statement, ControlBy)]
         setting = self.c.setting
         hosts = frozenset(setting.kinds) if self.host == ANY else frozenset({self.host})
-        found = [instances(setting, each, hosts) for each in controls]
+        found = [requested(setting, each, hosts) for each in controls]
         if any(each is None for each in found):
             return None
         return tuple(reaction for each in found for reaction in each or ())

@@ -9,9 +9,9 @@ from functools import cache
 from typing import assert_never
 
 from checker.reduction.footprint_slots import NOTHING, Slot, SlotFootprint, Slots
-from checker.reduction.possible_values import Roles
 from semantics.analysis.overapproximation import Names, Overapproximation
 from semantics.analysis.possible_messages import wakes
+from semantics.analysis.value_flow import ValueFlow
 from semantics.behaviours.expressions import Expression, Literal
 from semantics.behaviours.observations import All, Nodes, Query, QueryOperator
 from semantics.behaviours.reaction_rules import (
@@ -34,7 +34,7 @@ AGENTS: Slot = ("agents",)
 class Footprints:
     """The possible reads and writes of rules, within the bounds of one mission."""
 
-    def __init__(self, bounds: Overapproximation, roles: Roles) -> None:
+    def __init__(self, bounds: Overapproximation, roles: ValueFlow) -> None:
         self.bounds = bounds
         self.roles = roles
         self.slots = Slots()
@@ -102,7 +102,7 @@ class Footprints:
         """Bound `snd`: it delivers the message to one mailbox if hosts are linked."""
         reads = [("host", agent), ("host", to), *([AGENTS] if self.roles.may_come(to) else [])]
         delivered = self.slots.footprint(reads, merges=self.mail(to, message))
-        return delivered | self.linked(hosts, self.roles[to].hosts)
+        return delivered | self.linked(hosts, self.roles.hosts(to))
 
     def mail(self, to: Name, message: Expression) -> Iterator[Slot]:
         """Yield the slots for each of the receiver's `react` statements that a message may wake, or make fail."""

@@ -7,9 +7,9 @@ sender had: agents first agree, then observe and move.
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from checker.reduction.possible_values import Roles
 from semantics.analysis.overapproximation import Names
 from semantics.analysis.traversal import blocks
+from semantics.analysis.value_flow import ValueFlow
 from semantics.behaviours.program import Program
 from semantics.behaviours.statements import Block, Observe, React, Send, Spawn, Statement
 from semantics.races.relevance import tells
@@ -18,13 +18,13 @@ from semantics.state.requests import OBS
 from semantics.state.signature import Name
 
 
-def tellers(initial: Configuration, roles: Roles) -> Names:
+def tellers(initial: Configuration, roles: ValueFlow) -> Names:
     """Return the agents that may pass on observations, their own or received ones."""
     first = frozenset(_tellers(initial, roles, carrying=False))
     return frozenset(_tellers(initial, roles, carrying=True)) if first else first
 
 
-def _tellers(initial: Configuration, roles: Roles, *, carrying: bool) -> Iterator[Name]:
+def _tellers(initial: Configuration, roles: ValueFlow, *, carrying: bool) -> Iterator[Name]:
     lives = _Lives(initial.setting.program, carrying=carrying)
     for agent in roles.agents:
         if agent not in roles.first:

@@ -5,12 +5,11 @@ It is a least fixpoint: a variable may hold every value that a reachable stateme
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from typing import Final, TypeGuard
 
-from semantics.admission.program_points import once
 from semantics.analysis.abstract_values import (
     ANYTHING,
     NOTHING,
@@ -27,12 +26,15 @@ from semantics.analysis.abstract_values import (
     tuple_of,
     word,
 )
-from semantics.analysis.traversal import reachable
+from semantics.analysis.control_instances import instances
+from semantics.analysis.overapproximation import Overapproximation, transitive_closure
+from semantics.analysis.traversal import BoundPattern, Origin, bindings, reachable
 from semantics.behaviours.expressions import (
     Apply,
     Expression,
     Host,
     Literal,
+    QueryOf,
     RouteOf,
     Self,
     SetOf,
@@ -40,25 +42,14 @@ from semantics.behaviours.expressions import (
     TupleOf,
     Variable,
 )
-from semantics.behaviours.observations import Observation
+from semantics.behaviours.observations import All, Nodes, Observation, Of, Query
 from semantics.behaviours.program import Program
-from semantics.behaviours.statements import (
-    Assign,
-    Block,
-    Call,
-    Case,
-    ChooseFrom,
-    For,
-    ForEach,
-    Match,
-    Migrate,
-    React,
-    Send,
-    Spawn,
-    Statement,
-)
-from semantics.behaviours.values import Text
+from semantics.behaviours.reaction_rules import Reaction
+from semantics.behaviours.statements import Block, ControlBy, Migrate, React, Send, Spawn, Statement
+from semantics.behaviours.values import Text, Value
 from semantics.environment import Says
+from semantics.state.configuration import Configuration
+from semantics.state.requests import MGR, SND
 from semantics.state.setting import Setting
 from semantics.state.signature import NO_ENTITIES, REGION, Name
 
@@ -81,30 +72,52 @@ class PossibleBehaviour:
 
 
 class ValueFlow:
-    """The roles of all bigActors that the text declares or spawns, and the messages that it sends."""
+    """The possible behaviours of all bigActors: of all runs of a text, or of those from one configuration.
 
-    def __init__(self, setting: Setting) -> None:
+    Attributes:
+        entities: All entities, as an abstract value.
+        roles: The possible behaviour of each bigActor that may ever exist.
+        first: The bigActors at the beginning; no bigActor ever leaves.
+
+    Args:
+        setting: The mission.
+        bounds: The bounds of the first configuration; None for all runs of the text, with entities first seen later.
+    """
+
+    def __init__(self, setting: Setting, bounds: Overapproximation | None = None) -> None:
         self.setting = setting
+        self.bounds = bounds
         self.program: Program = setting.program
-        self.roles: dict[Name, PossibleBehaviour] = {}
         self.entities = Abstract(kinds=frozenset({*setting.signature.kinds, *setting.kinds.values()}))
+        self.roles: dict[Name, PossibleBehaviour] = {}
         self._grown = True
-        for agent, block in self.program.bodies.items():
-            self._begin(agent, block, word(self.program.homes[agent]))
+        self._posted: dict[Name, Abstract] = {}
         for each in _says(setting):
-            self.roles.setdefault(each.agent, PossibleBehaviour())
+            self._post(each.agent, each.message)
+        if bounds is None:
+            for agent, block in self.program.bodies.items():
+                self._begin(agent, block, word(self.program.homes[agent]))
+            for agent in self._posted:
+                self.roles.setdefault(agent, PossibleBehaviour())
+        else:
+            self._begin_from(bounds.initial)
+        self.first = frozenset(self.roles)
         while self._grown:
             self._grown = False
+            self._vocabulary = self.vocabulary_of(setting)
             self._grow()
 
     @property
-    def agents(self) -> frozenset[Name]:
-        """All bigActors that may ever exist."""
-        return frozenset(self.roles)
+    def agents(self) -> tuple[Name, ...]:
+        """All bigActors that may ever exist, sorted."""
+        return tuple(sorted(self.roles))
+
+    def __getitem__(self, agent: Name) -> PossibleBehaviour:
+        return self.roles[agent]
 
     def vocabulary_of(self, setting: Setting) -> Vocabulary:
         """Return the vocabulary of the mission, in a setting that may name entities first seen later."""
-        return Vocabulary(setting.kinds.get, self.agents)
+        return Vocabulary(setting.kinds.get, frozenset(self.roles))
 
     def variable(self, agent: Name, name: str) -> Abstract:
         """Return the possible values of an agent's variable, or of one kept for a property."""
@@ -116,20 +129,38 @@ class ValueFlow:
         )
         return join((role.given.get(name, NOTHING), *kept))
 
-    def once(self, agent: Name) -> frozenset[int]:
-        """Return the statements that an agent takes at most once."""
-        return once(self.program, self.roles[agent].starts)
+    # --- spawned bigActors --------------------------------------------------------------------------------------
+
+    def may_come(self, agent: Name) -> bool:
+        """Return whether an agent that doesn't exist may exist later."""
+        return agent in self.roles and agent not in self.first
+
+    def descendants(self, reach: Iterable[int]) -> frozenset[Name]:
+        """Return the agents that these statements may spawn, directly or through others."""
+        return transitive_closure(self._spawned(reach), lambda agent: self._spawned(self[agent].statements))
+
+    def _spawned(self, numbers: Iterable[int]) -> frozenset[Name]:
+        statements = (self.program.statements[number] for number in numbers)
+        return frozenset(each.name for each in statements if isinstance(each, Spawn))
+
+    # --- messages and values --------------------------------------------------------------------------------------
 
     def messages(self, agent: Name) -> Abstract:
         """Return the possible messages to an agent, from agents and from outside."""
-        found = (
-            self.value(sender, statement.message)
-            for sender in sorted(self.roles)
-            for statement in self._statements(sender)
-            if isinstance(statement, Send) and self._may_be(agent, sender, statement.to)
-        )
-        said = (constant(each.message) for each in _says(self.setting) if each.agent == agent)
-        return join((*found, *said))
+        return self._mail(agent, self._sent())
+
+    def _sent(self) -> list[tuple[Abstract, Abstract]]:
+        """Return the possible receivers and contents of each `send`."""
+        return [
+            (self.names(sender, each.to), self.value(sender, each.message))
+            for sender in self.agents
+            for each in self._statements(sender)
+            if isinstance(each, Send)
+        ]
+
+    def _mail(self, agent: Name, sent: Iterable[tuple[Abstract, Abstract]]) -> Abstract:
+        fits = self._vocabulary.fits
+        return join((self._posted.get(agent, NOTHING), *(each for to, each in sent if fits(agent, to))))
 
     def names(self, agent: Name, expression: Expression) -> Abstract:
         """Return the names that an expression may denote."""
@@ -145,7 +176,7 @@ class ValueFlow:
             case Self():
                 return word(agent)
             case Variable(name):
-                return self.variable(agent, name)
+                return self.roles[agent].given.get(name, NOTHING)
             case ShortCircuit():
                 return TRUTH
             case TupleOf(items):
@@ -162,41 +193,104 @@ class ValueFlow:
         """Return the possible members of a set, a route or an observation."""
         return members(value, replace(self.entities, agents=True, words=frozenset({REGION})))
 
+    def parents(self, node: Abstract) -> Abstract:
+        """Return the places in which an observation may have shown some nodes."""
+        if self.bounds is None:
+            return self.entities | _SEEN_PLACES
+        held = map(self.bounds.holders, self._among(self.setting.kinds, named(node)))
+        return Abstract(words=NO_ENTITIES.union(*held))
+
+    def may_be(self, constants: Abstract, value: Abstract) -> bool:
+        """Return whether a value may be one of some constants."""
+        others = constants != Abstract(constants.words)
+        return others or any(self._vocabulary.fits(each, value) for each in constants.words)
+
+    # --- names ----------------------------------------------------------------------------------------------------
+
+    def hosts(self, agent: Name) -> tuple[Name, ...]:
+        """Return the possible hosts of an agent, sorted."""
+        return self._among(self.setting.kinds, self.roles[agent].hosts)
+
+    def named_entities(self, agent: Name, expression: Expression) -> tuple[Name, ...]:
+        """Return the entities that an expression may name, sorted."""
+        return self._among(self.setting.kinds, self.names(agent, expression))
+
+    def receivers(self, agent: Name, expression: Expression) -> tuple[Name, ...]:
+        """Return the agents that an expression may name, sorted."""
+        return self._among(self.roles, self.names(agent, expression))
+
+    def _among(self, known: Iterable[Name], value: Abstract) -> tuple[Name, ...]:
+        open_ended = value.anything or value.kinds or value.agents
+        names = known if open_ended else value.words.intersection(known)
+        return tuple(sorted(str(name) for name in names if self._vocabulary.fits(name, value)))
+
+    def query(self, agent: Name, template: QueryOf) -> Query:
+        """Return a query for all possible names in a template; it observes at least as much."""
+        argument = template.argument
+        if argument is None:
+            return All()
+        inner = (
+            self.query(agent, argument)
+            if isinstance(argument, QueryOf)
+            else Nodes(self.named_entities(agent, argument))
+        )
+        return inner if template.operator is None else Of(template.operator, inner)
+
+    def reactions(self, agent: Name, control: ControlBy) -> tuple[Reaction, ...] | None:
+        """Return the reactions that a control of an agent may request; None if there are too many."""
+        arguments = (self.named_entities(agent, each) for each in control.arguments)
+        return instances(self.program, control.name, (self.hosts(agent), *arguments))
+
     # --- the fixpoint -----------------------------------------------------------------------------------------
 
-    def _statements(self, agent: Name) -> Iterator[Statement]:
-        yield from (self.program.statements[number] for number in sorted(self.roles[agent].statements))
+    def _begin_from(self, initial: Configuration) -> None:
+        """Begin with the bigActors, the variables, the messages and the requests of a configuration."""
+        for agent in initial.alpha.names():
+            self._begin(agent, initial.alpha.code(agent), word(initial.alpha.host(agent)))
+            for variable, value in initial.alpha.store(agent):
+                self._give(agent, variable, constant(value))
+            for message in initial.alpha.mailbox(agent):
+                self._post(agent, message)
+            for pending in initial.eta.of(agent):
+                match pending.request:
+                    case MGR(_, host):
+                        self._host(agent, word(host))
+                    case SND(_, to, message):
+                        self._post(to, message)
+
+    def _statements(self, agent: Name) -> list[Statement]:
+        return [self.program.statements[number] for number in sorted(self.roles[agent].statements)]
 
     def _grow(self) -> None:
-        for agent in sorted(self.roles):
+        sent = self._sent()
+        for agent in self.agents:
             received: Abstract | None = None
-            for statement in list(self._statements(agent)):
-                if isinstance(statement, React):
-                    received = self.messages(agent) if received is None else received
-                    self._cases(agent, statement.cases, received | OBSERVATION)
-                else:
-                    self._flow(agent, statement)
+            for statement in self._statements(agent):
+                taker = agent
+                if isinstance(statement, React) and received is None:
+                    received = self._mail(agent, sent) | OBSERVATION
+                elif isinstance(statement, Migrate):
+                    self._host(agent, self.names(agent, statement.host))
+                elif isinstance(statement, Spawn):
+                    taker = statement.name
+                    block = self.program.behaviours[statement.behaviour].body
+                    self._begin(taker, block, self.names(agent, statement.host))
+                for each in bindings(self.program, statement):
+                    value = self._bound(agent, each, received or OBSERVATION)
+                    for variable, part in (bound(each.pattern, value, self._vocabulary) or {}).items():
+                        self._give(taker, variable, part)
 
-    def _flow(self, agent: Name, statement: Statement) -> None:
-        match statement:
-            case Assign(variable, expression):
-                self._give(agent, variable, self.value(agent, expression))
-            case For(several, rest, _):
-                self._give(agent, rest, Abstract(lists=self.members(self.value(agent, several))))
-            case ForEach(variable, rest, _):
-                self._give(agent, variable, self.roles[agent].given.get(rest, NOTHING).lists or NOTHING)
-            case ChooseFrom(variable, several, _):
-                self._give(agent, variable, self.members(self.value(agent, several)))
-            case Match(expression, cases):
-                self._cases(agent, cases, self.value(agent, expression))
-            case Call(behaviour, arguments):
-                self._pass(agent, agent, behaviour, arguments)
-            case Migrate(host):
-                self._host(agent, self.names(agent, host))
-            case Spawn(name, host, behaviour, arguments):
-                block = self.program.behaviours[behaviour].body
-                self._begin(name, block, self.names(agent, host))
-                self._pass(agent, name, behaviour, arguments)
+    def _bound(self, agent: Name, binding: BoundPattern, received: Abstract) -> Abstract:
+        if binding.expression is None:
+            return received
+        value = self.value(agent, binding.expression)
+        match binding.origin:
+            case Origin.MEMBERS:
+                return Abstract(lists=self.members(value))
+            case Origin.MEMBER:
+                return self.members(value) | _element(self, replace(value, routes=None), NUMBER)
+            case _:
+                return value
 
     def _begin(self, agent: Name, block: Block, hosts: Abstract) -> None:
         role = self.roles.setdefault(agent, PossibleBehaviour())
@@ -212,26 +306,14 @@ class ValueFlow:
         self._grown |= (role.hosts | places) != role.hosts
         role.hosts |= places
 
+    def _post(self, agent: Name, message: Value) -> None:
+        self._posted[agent] = self._posted.get(agent, NOTHING) | constant(message)
+
     def _give(self, agent: Name, variable: str, value: Abstract) -> None:
         given = self.roles[agent].given
         before = given.get(variable, NOTHING)
         given[variable] = before | value
         self._grown |= given[variable] != before
-
-    def _cases(self, agent: Name, cases: Iterable[Case], value: Abstract) -> None:
-        for case in cases:
-            for variable, taken in (
-                bound(case.pattern, value, self.vocabulary_of(self.setting)) or {}
-            ).items():
-                self._give(agent, variable, taken)
-
-    def _pass(self, giver: Name, taker: Name, behaviour: str, arguments: tuple[Expression, ...]) -> None:
-        parameters = self.program.behaviours[behaviour].parameters
-        for parameter, argument in zip(parameters, arguments, strict=True):
-            self._give(taker, parameter, self.value(giver, argument))
-
-    def _may_be(self, name: Name, agent: Name, expression: Expression) -> bool:
-        return self.vocabulary_of(self.setting).fits(name, self.names(agent, expression))
 
 
 @dataclass(frozen=True, slots=True)
@@ -320,11 +402,12 @@ def _element(_: ValueFlow, value: Abstract, _index: Abstract) -> Abstract:
     return join((*several, *(item for items in value.tuples for item in items)))
 
 
-def _of_family(_: ValueFlow, family: Abstract, _node: Abstract) -> Abstract:
+def _of_family(flow: ValueFlow, family: Abstract, node: Abstract) -> Abstract:
+    """Return the members of a family that some nodes may denote."""
     pairs = NOTHING if family.sets is None else family.sets
     if family.anything or pairs.anything:
         return ANYTHING
-    return join(items[1] for items in pairs.tuples if len(items) > 1)
+    return join(items[1] for items in pairs.tuples if len(items) > 1 and flow.may_be(items[0], node))
 
 
 _SEEN_PLACES: Final = Abstract(words=NO_ENTITIES)
@@ -342,7 +425,7 @@ _RESULTS: Final[Mapping[str, Callable[..., Abstract]]] = {
     "children": lambda flow, *_: Abstract(sets=flow.entities),
     "agents": lambda *_: Abstract(sets=Abstract(agents=True)),
     "kind": lambda flow, _: Abstract(words=frozenset(map(Text, flow.entities.kinds))),
-    "parent": lambda flow, *_: flow.entities | _SEEN_PLACES,
+    "parent": lambda flow, node, _: flow.parents(node),
     "first": lambda flow, value: flow.members(value),
     "element": _element,
     "[]": _of_family,

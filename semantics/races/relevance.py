@@ -5,17 +5,14 @@ possible.
 """
 
 from collections.abc import Iterable, Iterator
-from contextlib import suppress
 from functools import lru_cache
-from itertools import product
-from math import prod
 
+from semantics.analysis.control_instances import instances
 from semantics.analysis.traversal import BoundPattern, bindings, expressions_of, reachable
 from semantics.behaviours.expressions import (
     OPERATORS,
     Apply,
     Expression,
-    Fault,
     Host,
     Literal,
     QueryOf,
@@ -51,9 +48,6 @@ Questions = frozenset[Key]
 """Keys; a key about `ANY` stands for those about every name."""
 
 SLOTS: Questions = frozenset((f"{SLOT}{kind}", ANY) for kind in ("parent", "links", "children"))
-
-MOST_INSTANCES = 5_000
-"""The most argument combinations of a control that are examined; with more, it may use any slot."""
 
 
 def relevant(keys: Iterable[Key], questions: Questions) -> frozenset[Key]:
@@ -233,27 +227,16 @@ def _asked(expression: Expression | QueryOf | None) -> Iterator[Key]:
 
 def _slots(setting: Setting, control: ControlBy, hosts: Names) -> Questions:
     """Return the slots that a control may use, for any values of its arguments."""
-    found = instances(setting, control, hosts)
+    found = requested(setting, control, hosts)
     if found is None:
         return SLOTS
     return frozenset[Key]().union(*map(slots_of, {reaction.redex for reaction in found}))
 
 
-def instances(setting: Setting, control: ControlBy, hosts: Names) -> tuple[Reaction, ...] | None:
+def requested(setting: Setting, control: ControlBy, hosts: Names) -> tuple[Reaction, ...] | None:
     """Return the reactions that a control may request, for any names as arguments; None if there are too many."""
-    ranges = _ranges(setting, control, hosts)
-    make = setting.program.reactions.get(control.name)  # a rule with a mistake, which is reported, makes none
-    if make is None or prod(map(len, ranges)) > MOST_INSTANCES:
-        return None
-    found = []
-    for host, *names in product(*map(sorted, ranges)):
-        with suppress(Fault):  # the command may reject some names
-            found.append(make(host, *names))
-    return tuple(found)
-
-
-def _ranges(setting: Setting, control: ControlBy, hosts: Names) -> list[Names]:
-    return [hosts, *(_range(setting, each, hosts) for each in control.arguments)]
+    ranges = (hosts, *(_range(setting, each, hosts) for each in control.arguments))
+    return instances(setting.program, control.name, ranges)
 
 
 def _range(setting: Setting, argument: Expression, hosts: Names) -> Names:

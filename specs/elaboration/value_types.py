@@ -124,7 +124,9 @@ Types = Mapping[str, Type]
 
 @dataclass(frozen=True)
 class Inference:
-    """The type inference of a mission.
+    """The type inference of a mission: for each variable one type, from the whole text, unreachable statements too.
+
+    `semantics.analysis.value_flow` is finer, and needs a text without mistakes.
 
     Attributes:
         program: The program of the bigActors.

@@ -19,8 +19,8 @@ from adapters.plugin import Plugin, Preflight, preflights
 from bigactors.commands.run.geofence import placements_of
 from bigactors.mistakes import Mistake
 from bigactors.terminal import tell
-from checker.reduction.possible_values import Roles
 from semantics.analysis.overapproximation import Overapproximation
+from semantics.analysis.value_flow import ValueFlow
 from semantics.behaviours.expressions import Fault
 from semantics.behaviours.reaction_rules import CONTROL_AUTHORITY, LinkTerm, NodeTerm, PlaceTerm, Reaction
 from semantics.behaviours.statements import ControlBy
@@ -127,13 +127,13 @@ def _place(mission: ElaboratedMission, line: int) -> str:
 
 def _controls(mission: ElaboratedMission) -> Iterator[tuple[Name, int, tuple[Reaction, ...]]]:
     """Yield the controls of each agent, with their lines and all possible arguments."""
-    program, roles = mission.setting.program, Roles(Overapproximation(mission.initial))
+    program, roles = mission.setting.program, ValueFlow(mission.setting, Overapproximation(mission.initial))
     for agent in roles.agents:
         for number in sorted(roles[agent].statements):
             statement = program.statements[number]
             if isinstance(statement, ControlBy):
-                arguments = (roles.entities(agent, each) for each in statement.arguments)
-                several: tuple[Sequence[Name], ...] = (sorted(roles[agent].hosts), *arguments)
+                arguments = (roles.named_entities(agent, each) for each in statement.arguments)
+                several: tuple[Sequence[Name], ...] = (sorted(roles.hosts(agent)), *arguments)
                 found = _instances(mission, program.reactions[statement.name], several)
                 yield agent, program.line(number), tuple(found)
 
