@@ -10,8 +10,8 @@ from contextlib import suppress
 from dataclasses import replace
 from typing import Any
 
-from checker.engines.fast.access_recording import Asked, CellRecorder, CellSource, ColumnQuestion, Conclusion
-from checker.engines.fast.value_templates import settled
+from checker.recording.access_recording import Asked, CellRecorder, CellSource, ColumnQuestion, Conclusion
+from checker.recording.value_templates import settled
 from checker.reduction.actor_footprints import Acting, Actor, Actors
 from checker.reduction.ample import Ample, disturbed
 from checker.reduction.footprint_slots import NOTHING, Slot, SlotFootprint
