@@ -18,6 +18,7 @@ from semantics.behaviours.process_conversion import next_statement
 from semantics.behaviours.statements import Block, Call, Loop, React
 from semantics.control import Obstacle, obstacle
 from semantics.environment import Says
+from semantics.fixpoints import closure
 from semantics.properties.propositions import Proposition, counterexample_names, holds
 from semantics.state.cell_values import QUEUE
 from semantics.state.configuration import Configuration, Transition
@@ -250,16 +251,13 @@ def is_at_rest(c: Configuration, a: Name) -> bool:
 
 def stands_in(c: Configuration, number: int, block: Block) -> bool:
     """Return whether a statement is in a block, or in a behaviour called there."""
-    program, seen, waiting = c.setting.program, set[str](), [block]
-    while waiting:
-        within = waiting.pop()
-        if number in within:
-            return True
+    program = c.setting.program
+
+    def called(within: Block) -> Iterator[Block]:
         calls = (each for each in map(program.statements.__getitem__, within) if isinstance(each, Call))
-        called = sorted({call.behaviour for call in calls} - seen)
-        seen.update(called)
-        waiting += [program.behaviours[name].body for name in called]
-    return False
+        return (program.behaviours[call.behaviour].body for call in calls)
+
+    return any(number in within for within in closure([block], called))
 
 
 class Computation(Inspection):

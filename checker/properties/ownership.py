@@ -25,6 +25,7 @@ from semantics.behaviours.expressions import (
 from semantics.behaviours.observations import QueryOperator
 from semantics.behaviours.reaction_rules import Pattern, Reaction, Term
 from semantics.behaviours.statements import ControlBy, Display, Migrate, Observe, Send, Spawn, Statement
+from semantics.fixpoints import closure
 from semantics.races.relevance import requested
 from semantics.state.configuration import Configuration
 from semantics.state.setting import Scheduler
@@ -154,13 +155,8 @@ class _Text:
             return frozenset({("parent", ANY)})
         signature, kinds = self.c.setting.signature, self.c.setting.kinds
         there = frozenset(kinds.values())
-        moved, carried = frozenset({kind}), signature[kind].carries & there
-        while not carried <= moved:
-            moved |= carried
-            carried |= frozenset(
-                cargo for each in carried for cargo in signature[each].carries if cargo in there
-            )
-        if any(signature[each].contains for each in moved):
+        carried = closure(signature[kind].carries & there, lambda each: signature[each].carries & there)
+        if any(signature[each].contains for each in {kind, *carried}):
             return frozenset({("parent", ANY)})
         return frozenset(("parent", name) for name, of in kinds.items() if of in carried)
 

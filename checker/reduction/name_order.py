@@ -21,6 +21,7 @@ from semantics.behaviours.statements import (
     Statement,
 )
 from semantics.environment import Says
+from semantics.fixpoints import fixpoint
 from semantics.state.configuration import Configuration
 from semantics.state.setting import Scheduler
 
@@ -56,13 +57,13 @@ def ordered(c: Configuration) -> str | None:
 def _routes(program: Program) -> frozenset[str]:
     """Return the variables that always hold a route; a greatest fixpoint because of loops."""
     given = [each for statement in program.statements for each in _given(statement, program)]
-    routes = frozenset(variable for variable, _ in given)
-    while True:
-        others = {variable for variable, value in given if value is None or not _is_route(value, routes)}
-        if not others:
-            return routes
-        routes -= others
-        given = [(variable, value) for variable, value in given if variable in routes]
+
+    def shrink(routes: frozenset[str]) -> frozenset[str]:
+        return routes.difference(
+            variable for variable, value in given if value is None or not _is_route(value, routes)
+        )
+
+    return fixpoint(shrink, frozenset(variable for variable, _ in given))
 
 
 def _given(statement: Statement, program: Program) -> Iterator[tuple[str, Expression | None]]:

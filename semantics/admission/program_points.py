@@ -6,6 +6,7 @@ from itertools import chain
 from semantics.analysis.traversal import blocks
 from semantics.behaviours.program import Program
 from semantics.behaviours.statements import Block, ForEach, Loop, Statement, While
+from semantics.fixpoints import closure
 
 Point = tuple[Block, int]
 """A block, and the number of its statements that have been taken or entered."""
@@ -32,16 +33,9 @@ def _statement(program: Program, number: int) -> Statement | None:
     return program.statements[number] if 0 <= number < len(program.statements) else None
 
 
-def _entered(program: Program, points: set[Point]) -> set[Point]:
+def _entered(program: Program, points: set[Point]) -> frozenset[Point]:
     """Return the points, and the ends of all blocks that may have been entered from them."""
-    found, waiting = set(points), list(points)
-    while waiting:
-        for block in _entered_from(program, *waiting.pop()):
-            point = (block, len(block))
-            if point not in found:
-                found.add(point)
-                waiting.append(point)
-    return found
+    return closure(points, lambda point: ((block, len(block)) for block in _entered_from(program, *point)))
 
 
 def _entered_from(program: Program, block: Block, at: int) -> Iterator[Block]:

@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 from enum import Enum, auto
 from functools import lru_cache
+from itertools import chain
 from typing import NamedTuple
 
 from semantics.behaviours.expressions import Expression, Variable
@@ -22,6 +23,7 @@ from semantics.behaviours.statements import (
     inner_blocks,
     operands,
 )
+from semantics.fixpoints import closure
 
 
 def blocks(program: Program, statement: Statement) -> tuple[Block, ...]:
@@ -40,15 +42,8 @@ def reachable(program: Program, code: Block) -> frozenset[int]:
 @lru_cache(maxsize=1 << 12)
 def _within(program: Program, first: int) -> frozenset[int]:
     """Return the statements that a statement may reach, itself included."""
-    seen: set[int] = set()
-    waiting = [first]
-    while waiting:
-        number = waiting.pop()
-        if number not in seen:
-            seen.add(number)
-            for block in blocks(program, program.statements[number]):
-                waiting.extend(block)
-    return frozenset(seen)
+    statements = program.statements
+    return closure([first], lambda number: chain.from_iterable(blocks(program, statements[number])))
 
 
 def expressions_of(statement: Statement) -> tuple[Expression, ...]:

@@ -27,7 +27,7 @@ from semantics.analysis.abstract_values import (
     word,
 )
 from semantics.analysis.control_instances import instances
-from semantics.analysis.overapproximation import Overapproximation, transitive_closure
+from semantics.analysis.overapproximation import Overapproximation
 from semantics.analysis.traversal import BoundPattern, Origin, bindings, reachable
 from semantics.behaviours.expressions import (
     Apply,
@@ -48,6 +48,7 @@ from semantics.behaviours.reaction_rules import Reaction
 from semantics.behaviours.statements import Block, ControlBy, Migrate, React, Send, Spawn, Statement
 from semantics.behaviours.values import Text, Value
 from semantics.environment import Says
+from semantics.fixpoints import closure
 from semantics.state.configuration import Configuration
 from semantics.state.requests import MGR, SND
 from semantics.state.setting import Setting
@@ -137,7 +138,7 @@ class ValueFlow:
 
     def descendants(self, reach: Iterable[int]) -> frozenset[Name]:
         """Return the agents that these statements may spawn, directly or through others."""
-        return transitive_closure(self._spawned(reach), lambda agent: self._spawned(self[agent].statements))
+        return closure(self._spawned(reach), lambda agent: self._spawned(self[agent].statements))
 
     def _spawned(self, numbers: Iterable[int]) -> frozenset[Name]:
         statements = (self.program.statements[number] for number in numbers)

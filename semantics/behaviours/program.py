@@ -16,6 +16,7 @@ from semantics.behaviours.statements import (
     inner_blocks,
     operands,
 )
+from semantics.fixpoints import fixpoint
 from semantics.state.agents import written
 from semantics.state.signature import Name
 
@@ -116,12 +117,11 @@ class Program:
     @cached_property
     def _reads(self) -> list[Names]:
         """The variables that each statement may read before it binds them: a least fixpoint, since loops lead back."""
-        reads = [NONE] * len(self.statements)
-        grown = True
-        while grown:
-            after = [_reads(statement, reads, self.statements) for statement in self.statements]
-            grown, reads = after != reads, after
-        return reads
+
+        def grow(reads: list[Names]) -> list[Names]:
+            return [_reads(statement, reads, self.statements) for statement in self.statements]
+
+        return fixpoint(grow, [NONE] * len(self.statements))
 
     @cached_property
     def live(self) -> Callable[[Block], Names]:

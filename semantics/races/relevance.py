@@ -37,6 +37,7 @@ from semantics.behaviours.statements import (
     Spawn,
     Statement,
 )
+from semantics.fixpoints import fixpoint
 from semantics.races.provenance import ANY, SLOT, Key
 from semantics.state.agents import Code
 from semantics.state.configuration import Configuration
@@ -92,13 +93,10 @@ def communicated_variables(program: Program, code: Code) -> Names:
 
 @lru_cache(maxsize=1 << 12)
 def _told(program: Program, reach: frozenset[int]) -> Names:
-    told: Names = frozenset()
-    while True:
-        parts = (_passed_on(program, program.statements[number], told) for number in sorted(reach))
-        grown = told.union(*parts)
-        if grown == told:
-            return told
-        told = grown
+    statements = [program.statements[number] for number in sorted(reach)]
+    return fixpoint(
+        lambda told: told.union(*(_passed_on(program, each, told) for each in statements)), frozenset[Name]()
+    )
 
 
 def uses_host(program: Program, code: Code) -> bool:
