@@ -16,11 +16,8 @@ from semantics.behaviours.expressions import (
     Host,
     Literal,
     QueryOf,
-    RouteOf,
-    SetOf,
-    ShortCircuit,
-    TupleOf,
     Variable,
+    direct_parts,
 )
 from semantics.behaviours.observations import QueryOperator
 from semantics.behaviours.reaction_rules import Pattern, Reaction, Term
@@ -197,13 +194,11 @@ class _Text:
         match expression:
             case Apply("in", (item, Variable(_))):
                 yield self.name(item)
-            case Apply(_, parts) | TupleOf(parts) | SetOf(parts) | RouteOf(parts):
-                for part in parts:
-                    yield from self._asks(part)
-            case ShortCircuit(_, first, second):
-                yield from (*self._asks(first), *self._asks(second))
             case Variable(_):
                 yield ANY
+            case _:
+                for part in direct_parts(expression):
+                    yield from self._asks(part)
 
     def _asked(self, query: QueryOf, tests: list[Name]) -> Iterator[Slot]:
         """Yield the slots that determine whether the tested names are shown."""

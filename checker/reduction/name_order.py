@@ -1,13 +1,11 @@
 """Dependence on the order of names: such a mission has no interchangeable names."""
 
 from collections.abc import Iterator
-from dataclasses import fields, is_dataclass
-from typing import Any
 
 from semantics.analysis.possible_messages import UNKNOWN, may_take
-from semantics.analysis.traversal import bindings
-from semantics.behaviours.expressions import Apply, Expression, Literal, RouteOf, Variable
-from semantics.behaviours.patterns import Exactly, variables
+from semantics.analysis.traversal import bindings, expressions_of
+from semantics.behaviours.expressions import Apply, Expression, Literal, RouteOf, Variable, subexpressions
+from semantics.behaviours.patterns import variables
 from semantics.behaviours.program import Program
 from semantics.behaviours.statements import (
     Assign,
@@ -45,7 +43,8 @@ def ordered(c: Configuration) -> str | None:
             return f"where one alternative of 'choose' fails, those after it in the order of names are lost{line}"
         if isinstance(statement, Display) and not isinstance(statement.value, Literal):
             return f"'display' prints names{line}"
-        if any(isinstance(each, Apply) and each.operator == "first" for each in parts(statement)):
+        inner = (each for whole in expressions_of(statement) for each in subexpressions(whole))
+        if any(isinstance(each, Apply) and each.operator == "first" for each in inner):
             return f"'first' takes names in their order{line}"
         if isinstance(statement, React):
             guarded = [case for case in statement.cases if case.guard is not None]
@@ -83,14 +82,3 @@ def _is_route(value: Expression, routes: frozenset[str]) -> bool:
         case Apply("+" | "-" | "minus" | "intersect" | "of", (first, *_)):
             return _is_route(first, routes)
     return False
-
-
-def parts(value: Any) -> Iterator[Any]:
-    """Yield a statement and all expressions and patterns in it."""
-    yield value
-    if isinstance(value, tuple | frozenset):
-        for each in value:
-            yield from parts(each)
-    elif is_dataclass(value) and not isinstance(value, Literal | Exactly):
-        for member in fields(value):
-            yield from parts(getattr(value, member.name))

@@ -16,13 +16,10 @@ from semantics.behaviours.expressions import (
     Host,
     Literal,
     QueryOf,
-    RouteOf,
-    SetOf,
-    ShortCircuit,
-    TupleOf,
     free,
     members_asked,
     reads_host,
+    subexpressions,
 )
 from semantics.behaviours.patterns import variables
 from semantics.behaviours.program import Program
@@ -206,21 +203,11 @@ def questions_in(setting: Setting, reach: frozenset[int], hosts: Names) -> Quest
     return frozenset(found)
 
 
-def _asked(expression: Expression | QueryOf | None) -> Iterator[Key]:
-    match expression:
-        case Apply(operator, arguments):
-            if free(expression):
-                shown = (each.value if isinstance(each, Literal) else ANY for each in arguments)
-                yield from OPERATORS[operator].asks(*shown)
-            for each in arguments:
-                yield from _asked(each)
-        case TupleOf(items) | SetOf(items) | RouteOf(items):
-            for each in items:
-                yield from _asked(each)
-        case ShortCircuit(_, first, second):
-            yield from (*_asked(first), *_asked(second))
-        case QueryOf(_, argument):
-            yield from _asked(argument)
+def _asked(expression: Expression) -> Iterator[Key]:
+    for part in subexpressions(expression):
+        if isinstance(part, Apply) and free(part):
+            shown = (each.value if isinstance(each, Literal) else ANY for each in part.arguments)
+            yield from OPERATORS[part.operator].asks(*shown)
 
 
 def _slots(setting: Setting, control: ControlBy, hosts: Names) -> Questions:
