@@ -28,6 +28,7 @@ MAY_IMPORT = {
 LAYERS = (
     "checker.limits",
     "checker.steps",
+    "checker.recording",
     "checker.reduction",
     "checker.engines",  # the contract of all engines, graphs, the reference engine
     "checker.properties",
@@ -55,9 +56,6 @@ UPWARD = {
     ("checker.properties", "checker.engines.timed"),  # first runs, and answers about time
     ("checker.properties", "checker.traces"),
     ("checker.properties", "checker.verdicts"),
-    ("checker.reduction", "checker.engines"),
-    ("checker.reduction", "checker.engines.fast"),  # the templates of values
-    ("checker.reduction", "checker.properties"),
 }
 """The imports among these parts that go the other way; remove one from here when its last import is gone."""
 

@@ -7,9 +7,8 @@ confirms that a vehicle is aboard another, that a load was put down, or that a c
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import suppress
-from itertools import islice, product
 
 from adapters.live.command_planning import is_authority
 from adapters.live.core import obeying
@@ -19,9 +18,8 @@ from adapters.plugin import Plugin, Preflight, preflights
 from bigactors.commands.run.geofence import placements_of
 from bigactors.mistakes import Mistake
 from bigactors.terminal import tell
-from checker.reduction.overapproximation import Overapproximation
-from checker.reduction.possible_values import Roles
-from semantics.behaviours.expressions import Fault
+from semantics.analysis.overapproximation import Overapproximation
+from semantics.analysis.value_flow import ValueFlow
 from semantics.behaviours.reaction_rules import CONTROL_AUTHORITY, LinkTerm, NodeTerm, PlaceTerm, Reaction
 from semantics.behaviours.statements import ControlBy
 from semantics.state.signature import Name
@@ -29,9 +27,6 @@ from specs.elaboration import ElaboratedMission
 
 PATIENCE = 15.0
 """Seconds that a vehicle has to report its parameters."""
-
-MOST_INSTANCES = 5_000
-"""The most instances of a control that are checked."""
 
 Objection = Callable[[Reaction], str]
 """Returns the objection to a control; empty if there is none."""
@@ -127,25 +122,17 @@ def _place(mission: ElaboratedMission, line: int) -> str:
 
 def _controls(mission: ElaboratedMission) -> Iterator[tuple[Name, int, tuple[Reaction, ...]]]:
     """Yield the controls of each agent, with their lines and all possible arguments."""
-    program, roles = mission.setting.program, Roles(Overapproximation(mission.initial))
-    for agent in roles.agents:
-        for number in sorted(roles[agent].statements):
-            statement = program.statements[number]
+    flow = ValueFlow(mission.setting, Overapproximation(mission.initial))
+    for agent in flow.agents:
+        for number in sorted(flow[agent].statements):
+            statement = flow.program.statements[number]
             if isinstance(statement, ControlBy):
-                arguments = (roles.entities(agent, each) for each in statement.arguments)
-                several: tuple[Sequence[Name], ...] = (sorted(roles[agent].hosts), *arguments)
-                found = _instances(mission, program.reactions[statement.name], several)
-                yield agent, program.line(number), tuple(found)
-
-
-def _instances(
-    mission: ElaboratedMission, make: Callable[..., Reaction], several: Iterable[Sequence[Name]]
-) -> Iterator[Reaction]:
-    for chosen in islice(product(*several), MOST_INSTANCES):
-        with suppress(Fault):  # the command refuses some names
-            reaction = make(*chosen)
-            if _may_take(mission, reaction):
-                yield reaction
+                found = flow.reactions(agent, statement) or ()  # of too many, a part shows nothing
+                yield (
+                    agent,
+                    flow.program.line(number),
+                    tuple(each for each in found if _may_take(mission, each)),
+                )
 
 
 def _may_take(mission: ElaboratedMission, reaction: Reaction) -> bool:
