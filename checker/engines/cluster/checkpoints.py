@@ -23,7 +23,7 @@ from checker.engines.fast.columns import Packing
 from checker.engines.fast.learned_model import CROWDS, CUT, EXPANDED, LIMIT, SIZE
 from checker.engines.fast.row_store import MOST_ROWS
 
-SCHEMA = "bigactors.shard/2"
+SCHEMA = "bigactors.shard/3"
 UNKNOWN = -1
 KEPT = (EXPANDED, SIZE, CUT, CROWDS, LIMIT)
 """The entries of the loops' state in a checkpoint."""
@@ -36,6 +36,7 @@ KINDS: Final[Kinds] = {
     "sizes": np.int64,
     "digests": np.uint8,
     "learned": np.int64,
+    "movers": np.uint32,
     "state": np.int64,
 }
 
@@ -105,6 +106,7 @@ def save(shard: Shard, folder: Path, number: int, digest: str) -> None:
         "words": store.packing.words,
         "layers": [*shard.begins, shard.end],
         "rules": dict(shard.rules()),
+        "allowed": shard.allowed,
         "happened": sorted(shard.happened_before | happened(shard)),
     }
     arrays = (
@@ -114,7 +116,8 @@ def save(shard: Shard, folder: Path, number: int, digest: str) -> None:
         np.frombuffer(b"".join(shard.keys.places), np.uint8),
         np.diff(shard.keys.begins).astype(np.int64),
         shard.keys.digests(),
-        np.array(sorted({row for row, *_ in shard.model.learned}), np.int64),
+        np.array(sorted(shard.learned), np.int64),
+        np.zeros(0) if shard.choosing is None else shard.choosing.paths.movers.room[: store.size],
         store.state[list(KEPT)],
     )
     write_archive(path_of(folder, number, shard.me), head, KINDS, arrays)
@@ -122,7 +125,7 @@ def save(shard: Shard, folder: Path, number: int, digest: str) -> None:
 
 def happened(shard: Shard) -> set[str]:
     """Return the names of the environment's events that occurred."""
-    taken = np.flatnonzero(shard.expander.counts.used)
+    taken = np.flatnonzero(shard.expander.met.used)
     steps = (shard.model.learner.steps.get(int(step)) for step in taken)
     return {str(label.about) for label in steps if label is not None and label.agent is None}
 
@@ -177,6 +180,9 @@ class Loading:
         fits = fits and int(self.begins[-1]) == len(self.digests)
         fits = fits and len(self.rows) == count * where.words
         fits = fits and all(0 <= row < count for row in self.learned)
+        if self.shard.choosing is not None:
+            most, movers = len(self.shard.choosing.everyone), self.arrays["movers"]
+            fits = fits and len(movers) == count and not np.any(movers > most)
         if not fits or not self._has_come_so_far(count):
             return False
         return repacking.mark_used(self.rows, where.words, where.columns, self.begins, self.used)
@@ -196,6 +202,8 @@ class Loading:
             and cut >= 0
             and min(rules.values(), default=0) >= 0
             and all(isinstance(word, str) for word in happened)
+            and type(self.head["allowed"]) is int
+            and self.head["allowed"] >= sum(rules.values())
         )
 
     def missing(self) -> int:
@@ -268,6 +276,10 @@ class Loading:
         *shard.begins, shard.end = self.head["layers"]
         shard.rules_before = Counter(self.head["rules"])
         shard.happened_before = frozenset(self.head["happened"])
-        shard.model.learned = [(int(row), 0, UNKNOWN, 0) for row in self.arrays["learned"]]
-        shard.expander.counts.used[:] = 0
+        shard.learned = set(self.arrays["learned"].tolist())
+        shard.allowed_before = self.head["allowed"]
+        shard.expander.counts.used[:] = shard.expander.met.used[:] = 0
         shard.look_around()
+        if shard.choosing is not None:
+            shard.choosing.paths.reserve(store.rows.room)
+            shard.choosing.paths.movers.room[:size] = self.arrays["movers"]

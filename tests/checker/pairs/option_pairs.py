@@ -11,7 +11,7 @@ from itertools import combinations
 from pathlib import Path
 from unittest.mock import patch
 
-from local_crew import LocalCrew
+from local_crew import explore_in_threads
 
 import checker.limits
 from bigactors.cli import main
@@ -31,7 +31,6 @@ from checker import (
 )
 from checker.engines.capabilities import Feature, Why, pair_of
 from checker.engines.cluster import ray_crew, rounds, shard
-from checker.engines.cluster.explorer import Expedition
 from checker.engines.contract import Cluster
 from checker.engines.fast import row_store
 from checker.engines.fast.rows import Rows
@@ -140,11 +139,6 @@ def spilled_rows():
         for each in (checker.limits, rounds, shard):
             patches.enter_context(patch.object(each, "memory_taken", taken))
         yield moves
-
-
-def explore_in_threads(initial, inspect, options):
-    """Explore as the engine Ray does, with workers in this process."""
-    return Expedition(LocalCrew(initial, 2, options.limits.pending), initial, options).run(inspect)
 
 
 def run(mission, asked):

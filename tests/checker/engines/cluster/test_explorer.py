@@ -40,9 +40,8 @@ def small_rounds(monkeypatch):
 
 
 def together(initial, workers, inspect=(), limits=LIMITS, **options):
-    return Expedition(LocalCrew(initial, workers, limits.pending), initial, Options(limits, **options)).run(
-        inspect
-    )
+    crew = LocalCrew(initial, workers, limits.pending, reduce=options.get("reduce"))
+    return Expedition(crew, initial, Options(limits, **options)).run(inspect)
 
 
 def inspections():
