@@ -148,7 +148,7 @@ class Shard:
         choosing: What chooses ample sets; None without partial-order reduction.
         round: With it, the rows that are being reduced.
         followed: The origins and transitions that the round has followed.
-        tried: The batch, and another one for the steps of one row.
+        tried: A batch for the steps of one row.
         waiting: The origins of the rows last sent to each worker.
         answers: For the rows last received from each, whether they are in the next layer.
         outbox: The successors that wait for sending.
@@ -172,16 +172,16 @@ class Shard:
         self.reduce = reduce
         self.me = me
         self.workers = workers
-        self.sent = 0
+        self.sent, self.shape = 0, (0, 0, 0)
         learner = Learner(initial.setting, initial.state, pending)  # type: ignore[arg-type]  # a stored one
-        self.store = RowStore(form=RowFormat(Elsewhere, compressible=False))  # rows travel between workers
-        self.model = RuleModel(learner, self.store, exchanging(learner, reduce, ahead=False))
         self.choosing = choosing(learner, reduce)
+        self.store = RowStore(form=RowFormat(Elsewhere, compressible=self.choosing is None, travels=True))
+        self.model = RuleModel(learner, self.store, exchanging(learner, reduce, ahead=False))
         self.expander = Expander(self.model, self.choosing)
         self.round: kernel.Leads | None = None
         self.keys = Keys(learner.columns)
         self.outbox = Outbox(self.store.packing)
-        self.tried: tuple[SuccessorBatch | None, SuccessorBatch | None] = (None, None)
+        self.followed: list[tuple[NDArray[Any], NDArray[Any]]] = []
         self.waiting: list[NDArray[Any]] = []
         self.answers: list[NDArray[np.bool_]] = []
         self.located_in: Packing | None = None
@@ -239,6 +239,8 @@ class Shard:
     def _see(self) -> None:
         """Keep up with the model, and with the packing of the rows."""
         self.keys.refresh()
+        if self.choosing is not None and self.shape != self.expander.shape:
+            self.shape, self.tried = self.expander.shape, self.expander.new_batch(self.expander.successors)
         where = self.store.packing
         if self.located_in is where:
             return
@@ -260,6 +262,8 @@ class Shard:
     def expand(self, layer: int, most: int) -> tuple[RowParcel, ...]:
         """Expand at most `most` rows of a layer, and return a parcel for each worker."""
         self.enter(layer)
+        if self.store.compress():
+            self.model.see()
         rows = range(self.expanded, min(self.expanded + most, self.end))
         if self.choosing is None:
             self._expand([rows], self.expander.gather)
@@ -302,6 +306,7 @@ class Shard:
         chosen, owners = np.zeros(count, np.int64), np.zeros(count, np.int32)
         found = kernel.deal(
             *store.arrays,
+            store.rows.folded,
             batch,
             count,
             self.owning(),
@@ -313,12 +318,23 @@ class Shard:
             self.round,
             store.state,
         )
-        self.send(batch, chosen[:found], owners[:found])
+        chosen, owners = chosen[:found], owners[:found]
+        if store.rows.folded is not None:
+            self._store(batch, chosen[owners == self.me])
+            chosen, owners = chosen[owners != self.me], owners[owners != self.me]
+        self.send(batch, chosen, owners)
+
+    def _store(self, batch: SuccessorBatch, which: NDArray[np.int64]) -> None:
+        """Store some successors of a batch, which are this worker's."""
+        rows = batch.kept.reshape(-1, self.store.packing.words)[which].ravel()
+        origins = batch.origins[which] * self.workers + self.me
+        mine = batch._replace(kept=rows, hashes=batch.hashes[which], origins=origins)
+        self.store.add(mine, (0, len(which)), self.model.making)
 
     def send(self, batch: SuccessorBatch, which: NDArray[np.int64], owners: NDArray[np.int32]) -> None:
         """Put some successors of a batch into the outbox; each has another worker."""
         rows = batch.kept.reshape(-1, self.store.packing.words)[which]
-        origins = batch.origins[which].astype(np.uint32)
+        origins: NDArray[Any] = batch.origins[which].astype(np.uint32)
         if self.choosing is not None:
             origins = origins | self.choosing.movers[batch.steps[which]].astype(np.uint64) << HALF
         self.outbox.add(rows, origins, owners)
@@ -342,10 +358,8 @@ class Shard:
         assert self.choosing is not None
         assert p is not None
         self.choosing.paths.reserve(store.rows.room)
-        if self.tried[0] is not expander.batch:
-            self.tried = expander.batch, expander.new_batch(expander.successors)
         known = (model.loops, self.choosing.members, *model.symmetry, self.choosing.paths.trails)
-        stored = (store.rows.words, store.rows.folded, store.table.room, self.tried[1], expander.batch)
+        stored = (store.rows.words, store.rows.folded, store.table.room, self.tried, expander.batch)
         counted = (p.reduced, p.begin, until, expander.met.room, store.state)
         return bool(gather_reduced(*known, *stored, *counted))
 
@@ -387,7 +401,8 @@ class Shard:
     def owners_of(self, rows: NDArray[np.uint64], origins: NDArray[np.int64]) -> NDArray[np.int32]:
         """Return the worker of each row; `origins` are own rows from which they were reached."""
         owners, store = np.zeros(len(origins), np.int32), self.store
-        kernel.owners_of(store.rows.words, origins, rows, store.packing.words, self.owning(), owners)
+        known = (store.rows.words, store.rows.folded)
+        kernel.owners_of(*known, origins, rows, store.packing.words, self.owning(), owners)
         return owners
 
     def parcels(self, *, always: bool = False) -> tuple[RowParcel, ...]:
@@ -465,7 +480,7 @@ class Shard:
         store.state[[SIZE, AT]] = 0, 0
 
     def look_around(self) -> None:
-        """Rebuild the table after rows were loaded in place."""
+        """Rebuild the table after rows were put in place."""
         self.store.rebuild(2 * max(self.size, FIRST_ROWS))
         self.store.make_room(self.expander.successors)
 

@@ -19,6 +19,7 @@ from checker.engines.cluster import explorer, ray_crew, shard
 from checker.engines.cluster.explorer import Expedition
 from checker.engines.cluster.shard import Shard
 from checker.engines.contract import Options
+from checker.engines.fast import row_store
 from checker.engines.fast.crosscheck import Disagreement
 from checker.reduction import Reduced
 from semantics.properties.propositions import Inside
@@ -55,6 +56,14 @@ def test_two_workers_visit_the_representatives_that_one_process_visits(name, var
         assert counted(found) == counted(alone)
         if alone.complete:
             assert set(found.configurations) == set(alone.configurations)
+
+
+def test_two_workers_fold_representatives(monkeypatch):
+    monkeypatch.setattr(row_store, "PLAIN", 0)
+    monkeypatch.setattr(row_store, "COMPRESSED_FROM", 8)
+    alone, found = alone_and_together(FAMILIES["more than one bound"].initial, EITHER["symmetry"])
+    assert counted(found) == counted(alone)
+    assert set(found.configurations) == set(alone.configurations)
 
 
 @pytest.mark.parametrize("name", ["takeover", "convoy", "rendezvous", "surveillance", "oil_spill"])
