@@ -86,6 +86,12 @@ class Choosing:
         """The number of words for a bit set of the parts of all agents and clauses."""
         return -(-(KINDS * len(self.everyone) + len(self.clauses)) // WORD) or 1
 
+    @property
+    def movers(self) -> NDArray[np.int64]:
+        """For each transition the number of its agent, plus 1; 0 for a clause (see `Trails.movers`)."""
+        agents = self.part.room[self.step_actor.used].astype(np.int64) // KINDS
+        return np.where(agents < len(self.everyone), agents + 1, 0)
+
     def see(self, groups: list[tuple[Name, ...]], where: Packing, successors: int) -> None:
         """Rebuild the tables from everything learned; `groups` has the agents for each value of their cell."""
         if groups != self.groups:
