@@ -34,7 +34,7 @@ def _how_of(options: Namespace) -> How:
     return How(
         options.engine and Engine(options.engine),
         options.violations,
-        tuple(map(Reduction, options.reduce)),
+        tuple(map(Reduction, options.reduce or ())),
         _keeping_of(options),
         _cluster_of(options),
         options.threads,

@@ -16,7 +16,7 @@ from adapters.plugin import Plugin
 from adapters.ros import RosFeed
 from adapters.static_places import StaticPlaces
 from adapters.web import Listen
-from bigactors.commands.run.option_values import LIVING
+from bigactors.arguments.values import LIVING
 from bigactors.files import read_bytes
 from bigactors.installed_plugins import FEEDS as INSTALLED
 from bigactors.installed_plugins import make_feed, require_known
