@@ -27,37 +27,30 @@ class Believer(Protocol):
     @property
     def craft(self) -> Craft:
         """The vehicle's description."""
-        ...
 
     @property
     def system(self) -> int:
         """Its system id."""
-        ...
 
     @property
     def known(self) -> Telemetry:
         """Its state."""
-        ...
 
     @property
     def on_board(self) -> OnBoard:
         """The items believed to be on board."""
-        ...
 
     @property
     def uploads(self) -> Mapping[MissionType, Unconfirmed]:
         """The uploads that were begun and are not confirmed."""
-        ...
 
     @property
     def survey(self) -> Survey:
         """The reading of it."""
-        ...
 
     @property
     def moving(self) -> Task | None:
         """The command that it carries out."""
-        ...
 
 
 Pilot = TypeVar("Pilot", bound=Believer)
