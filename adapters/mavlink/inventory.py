@@ -7,11 +7,10 @@ from typing import Final, Protocol, TypeVar
 
 from adapters.mavlink import item_polling as surveys
 from adapters.mavlink.constants import MissionType
-from adapters.mavlink.fast_replace import changed
 from adapters.mavlink.item_merging import OnBoard, Unconfirmed, before_upload
 from adapters.mavlink.item_polling import Survey, changed_by
 from adapters.mavlink.items import Items
-from adapters.mavlink.message import MavlinkMessage
+from adapters.mavlink.message import MavlinkMessage, changed
 from adapters.mavlink.next_step import Load, Step
 from adapters.mavlink.refuges import beyond_fence
 from adapters.mavlink.task import Task

@@ -1,11 +1,11 @@
-"""Arguments of commands as text: a sheet has a paragraph for each group, and an entry for each argument.
+"""Arguments of commands as text: a sheet has a paragraph for each group, and an entry for each argument:
 
     report
       --json FILE  write the report as JSON; - for standard output, alone
-      --violations N = 5  print at most N violations of each property
+      --violations N = 5  print at most N violations of each property.
 
-Two spaces part an argument, with its value and its default, from its help, which may go on in lines that are indented
-further. Arguments without a group stand in a paragraph without a title.
+The argument, with its value and its default, ends at two spaces; its help may go on in lines that are indented further.
+Arguments without a group stand in a paragraph without a title.
 """
 
 import argparse

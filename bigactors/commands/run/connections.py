@@ -22,8 +22,7 @@ from adapters.simulated import Kind, Vehicle
 from adapters.simulated.missing_sensor import MissingSensor
 from adapters.simulated.simulated_link import ADDRESS, SimulatedLink
 from bigactors.arguments.values import LIVING
-from bigactors.commands.run.cameras import cameras_of, poses_for
-from bigactors.commands.run.feeds import feeds_of
+from bigactors.commands.run.feeds import cameras_of, feeds_of, poses_for
 from bigactors.commands.run.geofence import fence_of
 from bigactors.commands.run.station_flight import driven, own_station
 from bigactors.installed_plugins import VEHICLES, make_vehicles, require_known

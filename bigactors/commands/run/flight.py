@@ -30,10 +30,16 @@ from adapters.simulated import run as run_simulated
 from bigactors import __version__
 from bigactors.commands.run.connections import fences_of, plugins_of
 from bigactors.commands.run.console_beside import console_beside, recorded
-from bigactors.commands.run.preflight_checks import check_flyable, check_idle, check_places, get_to_know
+from bigactors.commands.run.preflight_checks import (
+    check_flyable,
+    check_idle,
+    check_places,
+    check_ways,
+    get_to_know,
+    watchable,
+)
 from bigactors.commands.run.starting import Start, StartChecks, stand_by
 from bigactors.commands.run.station_flight import Company, company_of, parting_json
-from bigactors.commands.run.way_checks import check_ways, watchable
 from bigactors.exits import Exit
 from bigactors.files import check_writable
 from bigactors.flight_watchers import Log, Tape, Terminal

@@ -11,8 +11,13 @@ from adapters.live.core import obeying
 from adapters.live.loop import LiveRun
 from adapters.live.plan import Plan
 from adapters.plugin import Plugin, Status, preflights
-from bigactors.commands.run.preflight_checks import check_idle, check_places, get_to_know
-from bigactors.commands.run.way_checks import check_ways, unwatched
+from bigactors.commands.run.preflight_checks import (
+    check_idle,
+    check_places,
+    check_ways,
+    get_to_know,
+    unwatched,
+)
 from specs.elaboration import ElaboratedMission
 
 EVERY: Final = 0.25
