@@ -1,4 +1,4 @@
-"""Arguments of commands as text: a sheet has a paragraph for each group, and an entry for each argument:
+"""Arguments of commands as text: a sheet has a paragraph for each group, and an entry for each argument.
 
     report
       --json FILE  write the report as JSON; - for standard output, alone

@@ -104,11 +104,11 @@ def _simulated(craft: Craft, word: str, mission: ElaboratedMission, key: Signing
     kinds = {kind.name.lower().replace("_", "-"): kind for kind in Kind}
     if word not in kinds:
         raise Mistake(f"'{word:.40}' is no kind of simulated vehicle", f"there are {', '.join(kinds)}")
-    at = mission.initial.structure.physical.placement(craft.entity)
-    if not isinstance(at, Placed) or not at.geometry.is_point:
+    at = mission.initial.structure.physical.position(craft.entity)
+    if at is None:
         hint = f"place it in the world: {craft.entity}: {craft.kind} = point (37.0, -8.6)"
         raise Mistake(f"'{craft.entity}' stands at no point in the mission, so it has no home", hint)
-    ((latitude, longitude),) = at.geometry.vertices
+    latitude, longitude = at.geometry.vertices[0]
     return Vehicle(kinds[word], (latitude, longitude, GROUND), craft.system or 1, signing=key)
 
 
