@@ -11,6 +11,7 @@ from typing import Any
 
 from adapters.addresses import SCHEMES
 from adapters.assigned import Assigned
+from adapters.live.command_planning import is_authority
 from adapters.mavlink.keys import Keeper
 from adapters.mavlink.mavlink_plugin import Autopilot, Listener, Tap
 from adapters.mavlink.signing import Signing
@@ -29,7 +30,6 @@ from bigactors.installed_plugins import VEHICLES, make_vehicles, require_known
 from bigactors.mistakes import Mistake
 from bigraphs.notation.spelling import did_you_mean
 from physical import PhysicalError, PhysicalProperty
-from semantics.behaviours.reaction_rules import CONTROL_AUTHORITY
 from semantics.state.physical_model import Placed
 from semantics.state.signature import REGION
 from specs.elaboration import ElaboratedMission
@@ -184,7 +184,7 @@ def _craft(name: str, system: int | None, mission: ElaboratedMission) -> Craft:
             f"'{name}' is no vehicle: nothing drives its kind {kind}", f"declare it: kind {kind} driven"
         )
     channels = mission.initial.structure.physical.channels(name)
-    return Craft(name, kind, system, tuple(each for each in channels if not _is_authority(each)))
+    return Craft(name, kind, system, tuple(each for each in channels if not is_authority(each)))
 
 
 def _told(options: Namespace, scheme: str, name: str) -> str | None:
@@ -235,7 +235,7 @@ def _stations_of(mission: ElaboratedMission) -> set[str]:
     alpha, kinds = mission.initial.alpha, mission.setting.kinds
     hosts = {alpha.host(agent) for agent in alpha.names()}
     channels = {each for name in kinds for each in mission.initial.structure.physical.channels(name)}
-    named = {channel.partition(":")[2] for channel in channels if _is_authority(channel)}
+    named = {channel.partition(":")[2] for channel in channels if is_authority(channel)}
     return (hosts | named) & mission.fixed
 
 
@@ -259,7 +259,7 @@ def _stations(options: Namespace, mission: ElaboratedMission) -> Stations:
     """Return the stations named by the mission's channels of control authority, with their MAVLink ids."""
     physical = mission.initial.structure.physical
     channels = {
-        each for name in mission.setting.kinds for each in physical.channels(name) if _is_authority(each)
+        each for name in mission.setting.kinds for each in physical.channels(name) if is_authority(each)
     }
     names = sorted(channel.partition(":")[2] for channel in channels)
     given = {name: number for name, number in options.station if number is not None}
@@ -273,7 +273,3 @@ def _stations(options: Namespace, mission: ElaboratedMission) -> Stations:
         )
     own = own_station(options)
     return Stations(ids, (own,) if own in ids else tuple(ids)) if ids else Stations(in_mission=False)
-
-
-def _is_authority(channel: str) -> bool:
-    return channel.partition(":")[0] == CONTROL_AUTHORITY
