@@ -46,8 +46,7 @@ ARGUMENTS: Final = """\
 def run(options: Namespace) -> Exit:
     """Print the regions found in the frames, and the number of unusable frames by reason."""
     from adapters.camera.frames import frames_of
-    from adapters.camera.overlay import draw_patches
-    from adapters.camera.region_detection import properties, sightings
+    from adapters.camera.region_detection import draw_patches, properties, sightings
     from adapters.camera.sea_projection import Lens
     from adapters.camera.slick import find_slicks
     from adapters.naming import NamingService

@@ -49,9 +49,8 @@ ARGUMENTS: Final = f"""\
 
 def run(options: Namespace) -> Exit:
     """Replay a trace and print it; stop at a step that the rules do not allow."""
-    from bigactors.commands.replay.report_file import write_report
     from bigactors.commands.replay.trace_reader import is_foreign, read_trace
-    from bigactors.commands.replay.waypoint_export import write_route
+    from bigactors.commands.replay.waypoint_export import write_report, write_route
     from bigactors.mission_lookup import variation_of
     from checker import ReplayError, print_loop
     from semantics.state.printing import print_configuration
