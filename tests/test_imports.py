@@ -110,7 +110,7 @@ LIBRARIES = {
     "pymavlink": ("adapters/mavlink/codec.py",),
     "aiohttp": ("adapters/web.py",),
     "serial_asyncio_fast": ("adapters/transport.py",),
-    "zenoh": ("adapters/stations/bus.py", "adapters/ros/ros_node.py", "adapters/ros/publisher.py"),
+    "zenoh": ("adapters/stations/bus.py", "adapters/ros/ros_node.py", "adapters/ros/wire.py"),
     "xxhash": ("adapters/ros/wire.py",),
     "rosbags": ("adapters/ros/",),
     "msgspec": (
@@ -122,8 +122,8 @@ LIBRARIES = {
         "bigactors/studio/page_requests.py",
     ),
     "mcap": ("adapters/recording/mcap_files.py",),
-    "zstandard": ("adapters/recording/decompression.py",),
-    "lz4": ("adapters/recording/decompression.py",),
+    "zstandard": ("adapters/recording/mcap_files.py",),
+    "lz4": ("adapters/recording/mcap_files.py",),
     "pygls": ("bigactors/lsp/language_server.py",),  # which nothing imports before it serves
     "lsprotocol": ("bigactors/lsp/language_server.py",),
     "cryptography": ("bigactors/signatures.py",),
