@@ -141,7 +141,7 @@ def of_vehicle(c: Configuration, vehicle: Name) -> ActorClocks:
 
 
 def is_restored(c: Configuration, vehicle: Name) -> bool:
-    """Whether a vehicle is at a place that restores it, or aboard a carrier that does, also while that is in transit."""
+    """Whether a vehicle is at a place that restores it, or aboard a carrier that does, also on its way."""
     places = dict(timing_of(c).endurances)[vehicle].places
     return any(place in places for place in _around(c, vehicle))
 
