@@ -95,10 +95,11 @@ def late_deadline(at: ParsePoint) -> Diagnostic | None:
 
 def claim_by_at(at: ParsePoint) -> Diagnostic | None:
     """`uav0 at west0`: read as the claim `uav0 at least ...`."""
-    if at.accepted != {"least"} or at.before.text != "at" or not at.found.is_name:
+    who = word_before(at.prepared.text, at.before.span.start).text
+    if at.accepted != {"least"} or at.before.text != "at" or who in ("take", "takes") or not at.found.is_name:
         return None
-    hint = f"write in: {word_before(at.prepared.text, at.before.span.start).text} in {at.found.text}"
-    return Diagnostic(Code.MISSPELT_KEYWORD, at.before.span, "'at' is not a word of the language here", hint)
+    message, hint = "'at' is not a word of the language here", f"write in: {who} in {at.found.text}"
+    return Diagnostic(Code.MISSPELT_KEYWORD, at.before.span, message, hint)
 
 
 DISTANCE_MISTAKES: Final[tuple[Callable[[ParsePoint], Diagnostic | None], ...]] = (
