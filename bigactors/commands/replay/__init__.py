@@ -114,7 +114,7 @@ def _introduce(recording: Recording) -> None:
     if recording.left_out:
         tell(f"{recording.left_out:,} arrivals were not recorded: more came in a second than are written")
     if recording.torn:
-        tell("the recording has no end: the run was killed")
+        tell("the recording has no end: the run was killed, or still writes it")
 
 
 def _tell_breaches(recording: Recording) -> None:
