@@ -45,8 +45,8 @@ from semantics.behaviours.expressions import (
 from semantics.behaviours.observations import All, Nodes, Observation, Of, Query
 from semantics.behaviours.program import Program
 from semantics.behaviours.reaction_rules import Reaction
-from semantics.behaviours.statements import Block, ControlBy, Migrate, React, Send, Spawn, Statement
-from semantics.behaviours.values import Text, Value
+from semantics.behaviours.statements import Block, ControlBy, ForEach, Migrate, React, Send, Spawn, Statement
+from semantics.behaviours.values import Text, Value, within
 from semantics.environment import Says
 from semantics.fixpoints import closure
 from semantics.state.configuration import Configuration
@@ -246,10 +246,13 @@ class ValueFlow:
 
     def _begin_from(self, initial: Configuration) -> None:
         """Begin with the bigActors, the variables, the messages and the requests of a configuration."""
+        rests = {each.rest for each in self.program.statements if isinstance(each, ForEach)}
         for agent in initial.alpha.names():
             self._begin(agent, initial.alpha.code(agent), word(initial.alpha.host(agent)))
             for variable, value in initial.alpha.store(agent):
-                self._give(agent, variable, constant(value))
+                shorter = variable in rests and isinstance(value, tuple)  # a loop takes its members from it
+                of = Abstract(lists=join(map(constant, within(value)))) if shorter else constant(value)
+                self._give(agent, variable, of)
             for message in initial.alpha.mailbox(agent):
                 self._post(agent, message)
             for pending in initial.eta.of(agent):
