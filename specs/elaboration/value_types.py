@@ -117,6 +117,7 @@ _SORT_OF: Final[Mapping[type, ValueSort]] = {
     Observation: ValueSort.OBSERVATION,
 }
 
+_TUPLE: Final = Sorts({ValueSort.TUPLE})
 ANY: Final = of(*ValueSort)
 NOTHING: Final = Type(Sorts())
 Types = Mapping[str, Type]
@@ -169,8 +170,7 @@ class Inference:
         received = (ANY if messages is None else messages) | of(ValueSort.OBSERVATION)
         for each in bindings(self.program, statement):
             value = received if each.expression is None else self.type(each.expression, known)
-            part = of(*members_of(value)) if each.origin is Origin.MEMBER else value
-            yield from bound(each.pattern, part)
+            yield from bound(each.pattern, _part_of(value, each.origin))
 
     def constant(self, value: Value) -> Type:
         """Return the type of a constant."""
@@ -218,6 +218,17 @@ class Inference:
 
 def _tag(value: Value) -> Tag:
     return value if isinstance(value, Text | str) else None
+
+
+def _part_of(value: Type, origin: Origin) -> Type:
+    """Return the type that a statement binds; the rest of a loop is a tuple of unknown length."""
+    match origin:
+        case Origin.MEMBERS:
+            return Type(_TUPLE, members_of(value), None)
+        case Origin.MEMBER:
+            return of(*(value.members if value.sorts == _TUPLE else members_of(value)))
+        case _:
+            return value
 
 
 def members_of(collection: Type) -> Sorts:
