@@ -26,14 +26,14 @@ from checker.engines.fast.columns import Packing
 from checker.engines.fast.decision_leaves import LEAF
 from checker.engines.fast.learner import Learner
 from checker.engines.fast.proviso_paths import EDGES, FORWARD, SINGLE, SearchPaths
-from checker.engines.fast.value_templates import agents_of
-from checker.properties.inspections import never_ends
+from checker.recording.value_templates import agents_of
 from checker.reduction.actor_footprints import Acting, Actor
 from checker.reduction.ample import Ample
 from checker.reduction.footprint_slots import SlotFootprint
 from checker.reduction.visible_slots import VisiblePart
 from semantics.state.configuration import Configuration, Label
 from semantics.state.signature import Name
+from semantics.timing.arrivals import never_ends
 
 NOBODY = -1
 

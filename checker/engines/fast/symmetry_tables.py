@@ -25,7 +25,7 @@ from checker.engines.fast.canonicalise import (
 )
 from checker.engines.fast.columns import Packing, Writes
 from checker.engines.fast.learner import Learner
-from checker.engines.fast.value_templates import holes, split_value
+from checker.recording.value_templates import holes, split_value
 from checker.reduction.member_items import Items, Member, Place, Roles
 from checker.reduction.representatives import MOST_ORDERS
 from semantics.state.cell_values import AGENTS, NAMES
