@@ -363,7 +363,12 @@ class Shard:
         mine, others = np.flatnonzero(owners == self.me), np.flatnonzero(owners != self.me)
         assert self.choosing is not None
         places[mine] = self._store(batch, mine, self.choosing.movers[batch.steps[mine]])
-        followed = (batch.origins[:count].copy(), batch.steps[:count].astype(np.int64), owners, places)
+        followed = (
+            batch.origins[:count].copy(),
+            batch.steps[:count].astype(np.int64),
+            owners.astype(np.int64),
+            places,
+        )
         found.followed.append(followed)
         self.send(batch, others, owners[others])
 
