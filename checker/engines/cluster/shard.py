@@ -231,9 +231,7 @@ class Shard:
         self.dictionaries = [Dictionary() for _ in range(self.workers)]
         self.outbox = Outbox(self.store.packing)
         if self.choosing is not None:
-            self.choosing.paths.movers.room[0] = self.paths.leads.room[0] = (
-                0  # nobody's step led to the first row
-            )
+            self.choosing.paths.movers.room[0] = self.paths.leads.room[0] = 0
         self._forget_sent()
 
     def _see(self) -> None:
