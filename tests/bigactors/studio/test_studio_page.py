@@ -229,6 +229,8 @@ def test_a_name_is_chosen_in_the_text_on_the_map_and_in_the_bigraph_together(ope
     x, y = page.evaluate("studio.map.pixelOf([37.003, -8.643])")
     page.locator("#map").click(position={"x": x, "y": y})
     says(page, ".chosen-name", "west0 ×")
+    chart = page.evaluate("studio.map.summary()")
+    assert "uav0, UAV, 37°00.600′N 008°39.000′W." in chart  # nothing is heard of a design
     assert page.evaluate("studio.editor.view.root.querySelector('.cm-chosen-name').textContent") == "west0"
     picture(page, "chosen")
     for width, height in ((1024, 768), (390, 844)):
