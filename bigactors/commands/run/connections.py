@@ -252,7 +252,10 @@ def _check_all_driven(options: Namespace, mission: ElaboratedMission) -> None:
     """
     missing = sorted(driven(mission) - {name for name, _, _ in options.vehicle})
     if missing and own_station(options) is None:
-        hint = f"give its address: --vehicle {missing[0]}=udp:127.0.0.1:14550"
+        hint = (
+            f"give its address: --vehicle {missing[0]}=udp:127.0.0.1:14550, or for a rehearsal "
+            f"{missing[0]}=simulated:plane; traffic that nobody here commands is of a kind that is not driven"
+        )
         raise Mistake(f"vehicles of the mission have no address: {', '.join(missing)}", hint)
 
 
