@@ -90,6 +90,7 @@ world harbour.geojson --within -10,-100,10,100  # --within: from longitude
 world harbour.geojson --within -10,-170,10,170  # --within: from longitude
 world harbour.geojson --within -10,100,10,-60  # --within: from longitude
 explain LS999  # bigactors: there is no code and no word 'LS999'\n  hint: bigactors explain lists them all
+explain Fairness  #   hint: bigactors explain weak fairness or bigactors explain strong fairness
 explain deadlok  # bigactors: there is no code and no word 'deadlok'\n  hint: did you mean 'deadlock'?
 check --sign own.key oil_spill  # --sign signs a verdict
 run oil_spill --vehicle=uav0=udp:127.0.0.1:0 --unverified --trust own.key.pub  # --trust for a signed one
