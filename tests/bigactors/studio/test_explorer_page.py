@@ -113,7 +113,9 @@ def test_with_times_the_moment_of_a_step_is_chosen_and_the_saved_trace_replays(o
 def test_the_graph_shows_every_configuration_bad_ones_red_and_leads_to_each(opened):
     page = opened("broken_inconsistent")
     page.get_by_role("button", name="Graph").click()
-    expect(page, ".graph output").to_have_text(re.compile(r"24 configurations(, \d+ drawn: chains are folded)?"))
+    expect(page, ".graph output").to_have_text(
+        re.compile(r"24 configurations(, \d+ drawn: chains are folded)?")
+    )
     assert page.locator(".graph .bad").count() > 0
     page.locator(".graph .bad").first.click()
     expect(page, ".values .bad").to_contain_text("local_consistency")

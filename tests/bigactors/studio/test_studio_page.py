@@ -277,6 +277,26 @@ def test_the_world_is_drawn_on_the_map_and_its_text_follows_until_it_is_undone(o
     assert text_of(page) == MISSION
 
 
+DROP = """([name, text]) => {
+  const dataTransfer = new DataTransfer();
+  dataTransfer.items.add(new File([text], name));
+  const over = (type) => document.querySelector("#map").dispatchEvent(
+    new DragEvent(type, { bubbles: true, cancelable: true, dataTransfer }));
+  return [over("dragover"), over("drop")];
+}"""
+
+
+def test_a_file_dropped_on_the_map_brings_its_places_and_another_is_refused(opened, tmp_path):
+    page = opened("patrol.mission", MISSION)
+    shows(page, ".bigraph svg")
+    assert page.evaluate(DROP, ["buoys.geojson", json.dumps(PLACES)]) == [False, False]  # both are taken
+    until(page, "studio.editor.text.includes('from \"buoys.geojson\"')")
+    until(page, "studio.store.section('places').has('buoy7')")
+    page.evaluate(DROP, ["bad.geojson", "{"])
+    shows(page, ".trouble >> text=bad.geojson: the text is not JSON")
+    assert [each.name for each in tmp_path.glob("*.geojson")] == ["buoys.geojson"]
+
+
 @pytest.mark.parametrize("theme", ["light", "dark"])
 def test_axe_finds_no_fault_in_the_studio(opened, theme):
     if not AXE.exists():
