@@ -49,8 +49,8 @@ def timed_by(situation: TimedView, step: TimedStep) -> Timed:
         return _timed_clause(situation, step)
     if request is not None:
         ways = [situation.bounds.get(clock, ANY_TIME) for clock in step.done]  # a message may have several
-        most = [each.hi for each in ways if each.hi is not None]
-        return Timed(step.done, Interval(min(each.lo for each in ways), min(most, default=None)))
+        ends = [each.hi for each in ways if each.hi is not None]
+        return Timed(step.done, Interval(min(each.lo for each in ways), min(ends, default=None)))
     sort = Sort.AFTER if step.transition.label.rule == "timeout" else Sort.AGENT
     clock = ActorClock(sort, step.transition.label.agent)
     return Timed(
