@@ -177,6 +177,11 @@ def test_a_mistake_is_shown_where_it_stands_with_its_quick_fix(opened):
     page.click(".cm-tooltip-hover .cm-diagnosticAction")
     shows(page, ".verdicts .verdict-holds")
     assert text_of(page) == MISSION
+    shows(page, ".cm-margin .sign-holds")
+    put_cursor(page, "  reachable")
+    page.keyboard.type("x")
+    says(page, ".verdicts > [role=status]", "Not checked: the text has mistakes.")
+    assert page.locator(".cm-margin .sign-holds").count() == 0
 
 
 def test_a_name_is_explained_completed_and_renamed_by_the_language_server(opened):
