@@ -275,8 +275,10 @@ def _stations(options: Namespace, mission: ElaboratedMission) -> Stations:
             f"no channel 'control:{unknown[0]:.40}' is in the mission",
             did_you_mean(unknown[0], ids) or "see its channels",
         )
+    if not ids:
+        return Stations({"this run": 255}, ("this run",), in_mission=False)
     own = own_station(options)
-    return Stations(ids, (own,) if own in ids else tuple(ids)) if ids else Stations(in_mission=False)
+    return Stations(ids, (own,) if own in ids else tuple(ids))
 
 
 def _is_authority(channel: str) -> bool:
