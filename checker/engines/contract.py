@@ -211,7 +211,7 @@ class Exploration:
     def __repr__(self) -> str:
         return (
             f"<Exploration configurations={self.size} transitions={self.transitions} depth={self.depth} "
-            f"complete={self.complete}>"
+            f"complete={f'False: {self.bounds[0]}' if self.bounds else True}>"
         )
 
     @property
