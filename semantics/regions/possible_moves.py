@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Iterator
 from contextlib import suppress
+from functools import lru_cache
 from itertools import product
 from math import prod
 from typing import NamedTuple
@@ -40,16 +41,44 @@ def possible_moves(c: Configuration) -> tuple[PossibleMove, ...]:
     return tuple(sorted(found))
 
 
+def may_move(setting: Setting, agent: Name, entity: Name) -> bool:
+    """Whether a control of an agent's text may move an entity; true for an agent without a text."""
+    moved = _moved(setting).get(agent)
+    return moved is None or entity in moved
+
+
+@lru_cache(maxsize=8)
+def _moved(setting: Setting) -> dict[Name, frozenset[Name]]:
+    """Return for each agent with a text the entities that it may move."""
+    flow = flow_of(setting)
+    return {
+        agent: frozenset(
+            move.entity
+            for reaction in dict.fromkeys(_controls(setting, flow, agent, role.statements))
+            for move in _moves(setting, agent, reaction)
+        )
+        for agent, role in flow.roles.items()
+        if role.starts
+    }
+
+
 def _requested(c: Configuration, flow: ValueFlow, agent: Name) -> Iterator[Reaction | None]:
     """Yield the reactions that an agent may request; None for any."""
     if agent in c.alpha:
         for pending in c.eta.of(agent):
             if isinstance(pending.request, CTR | FLY):
                 yield pending.request.reaction
-    for number in sorted(_statements(c, flow, agent)):
-        statement = c.setting.program.statements[number]
+    yield from _controls(c.setting, flow, agent, _statements(c, flow, agent))
+
+
+def _controls(
+    setting: Setting, flow: ValueFlow, agent: Name, statements: Iterable[int]
+) -> Iterator[Reaction | None]:
+    """Yield the reactions of an agent's controls among some statements; None for any."""
+    for number in sorted(statements):
+        statement = setting.program.statements[number]
         if isinstance(statement, ControlBy):
-            yield from _instances(c.setting, flow, agent, statement)
+            yield from _instances(setting, flow, agent, statement)
 
 
 def _statements(c: Configuration, flow: ValueFlow, agent: Name) -> Iterable[int]:
