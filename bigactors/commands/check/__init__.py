@@ -157,6 +157,13 @@ def _exploring(parser: Parser) -> None:
         "with --reduce por one)",
     )
     group.add_argument(
+        "--clock",
+        choices=("local", "global"),
+        default="local",
+        help="explore a mission with timing by zones of local time, one clock for each process, where that is sound "
+        "(not under fcfs, with spawn or with --reduce symmetry), or by one clock for all (default: local)",
+    )
+    group.add_argument(
         "--reduce",
         metavar="NAMES",
         type=reductions,

@@ -7,6 +7,7 @@ from bigactors.files import make_folder
 from bigactors.mistakes import Mistake
 from checker import Cluster, CombinationError, Engine, Keeping, Limits, Reduction
 from checker.engines.capabilities import engines, features
+from checker.engines.contract import ZoneClock
 from checker.limits import MOST_PENDING
 
 MOST, MOST_OF_REFERENCE = 100_000_000, 2_000_000
@@ -38,6 +39,7 @@ def _how_of(options: Namespace) -> How:
         _keeping_of(options),
         _cluster_of(options),
         options.threads,
+        ZoneClock(options.clock),
         options.times,
         options.ways,
         any(name == "geojson" for name, _ in options.output),

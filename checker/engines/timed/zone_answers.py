@@ -71,7 +71,7 @@ class ZoneTimes:
     @property
     def searched(self) -> str:
         """The size of the searched state space, in words."""
-        return f"{self.search.count:,} zones"
+        return f"{self.search.count:,} zones" + (" of local time" if self.search.is_local else "")
 
     @property
     def situations(self) -> Sequence[TimedView]:

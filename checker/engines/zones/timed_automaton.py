@@ -63,11 +63,11 @@ class ConstantTooLargeError(Exception):
     """A constant that exceeds the largest one for clocks."""
 
 
-LOCATION, EDGE, TEST, DEADLINE = 8, 7, 3, 2
+LOCATION, EDGE, TEST, DEADLINE = 8, 8, 3, 3
 """The length of each kind of record."""
 
 SIZE, CLOCKS, DEADLINES, DEADLINES_END, EDGES, EDGES_END, GOAL, LEAST = range(LOCATION)
-STEP, TARGET, TESTS, TESTS_END, SOURCES, LEARNED, FIRST = range(EDGE)
+STEP, TARGET, TESTS, TESTS_END, SOURCES, LEARNED, FIRST, FOOTPRINT = range(EDGE)
 
 
 def _numbers() -> Growing:
@@ -81,10 +81,13 @@ class TimedAutomaton:
     Attributes:
         locations: Records of `LOCATION` numbers: one more than the count of its clocks, the ranges of its parts, its
             goal.
-        edges: Records of `EDGE` numbers; the last two are the number of the learned step, and the number of steps
-            before the edge was first taken.
+        edges: Records of `EDGE` numbers; the last three are the number of the learned step, the number of steps before
+            the edge was first taken, and the number of its footprint.
+        deadlines: Records of `DEADLINE` numbers: the clock, its bound, and the process that waits no longer.
         lower, upper: For each clock the largest constant of its lower and of its upper bounds.
         rows: The row of each location; the locations of one row are expanded together.
+        takes_from, takes: For each footprint the range of its participants, and those.
+        processes: The number of processes in local time.
         largest: One more than the most clocks of any location.
     """
 
@@ -97,6 +100,9 @@ class TimedAutomaton:
     lower: Growing = field(default_factory=_numbers)
     upper: Growing = field(default_factory=_numbers)
     rows: Growing = field(default_factory=_numbers)
+    takes_from: Growing = field(default_factory=_numbers)
+    takes: Growing = field(default_factory=_numbers)
+    processes: int = 1
     largest: int = 1
 
     def __len__(self) -> int:
@@ -125,7 +131,7 @@ class TimedAutomaton:
         begin = len(self.deadlines) // DEADLINE
         for each in location.deadlines:
             _look(each[1])
-            self.deadlines.append(*each)
+            self.deadlines.append(*each, 0)
         end = len(self.deadlines) // DEADLINE
         clocks = self.clocks.append(*location.clocks)
         goal, least = (NONE, 0) if location.goal is None else location.goal[:2]
@@ -142,16 +148,20 @@ class TimedAutomaton:
             for test in tests:
                 self.tests.append(*test)
             at = self.sources.append(*sources)
-            self.edges.append(step, target, first, len(self.tests) // TEST, at, NONE, NONE)
+            self.edges.append(step, target, first, len(self.tests) // TEST, at, NONE, NONE, NONE)
         self._record(location)[EDGES : EDGES_END + 1] = begin, len(self.edges) // EDGE
 
     def location(self, number: int) -> Location:
         """Return a location."""
         size, clocks, begin, end, _, _, goal, least = self._record(number).tolist()
-        deadlines = self.deadlines.room[DEADLINE * begin : DEADLINE * end].reshape(-1, DEADLINE).tolist()
+        deadlines: dict[int, int] = {}
+        for clock, most, _ in (
+            self.deadlines.room[DEADLINE * begin : DEADLINE * end].reshape(-1, DEADLINE).tolist()
+        ):
+            deadlines[clock] = min(most, deadlines.get(clock, most))
         numbers = self.clocks.room[clocks : clocks + size - 1].tolist()
         sought = None if goal < 0 else Constraint(goal, least)
-        return Location(tuple(numbers), tuple((clock, most) for clock, most in deadlines), sought)
+        return Location(tuple(numbers), tuple(deadlines.items()), sought)
 
     def out(self, location: int) -> list[Edge]:
         """Return the edges of a location; none before they are worked out."""
