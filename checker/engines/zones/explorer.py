@@ -84,8 +84,8 @@ class _Learning(Search):
 
     def __init__(self, network: Network) -> None:
         self.network = network
-        self.is_local = network.participants is not None
-        super().__init__(network.automaton, network.first, network.first_ages)
+        is_local = network.participants is not None
+        super().__init__(network.automaton, network.first, network.first_ages, is_local=is_local)
 
     def learn(self) -> None:
         """Work out the edges of all reached locations."""

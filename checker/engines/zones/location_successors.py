@@ -22,7 +22,6 @@ from checker.engines.fast.tree_compression import FoldedTable, unfold
 from checker.engines.zones import timed_automaton as automata
 from checker.engines.zones.clock_images import UNNAMED, note_names
 from checker.engines.zones.difference_bounds import NONE
-from checker.engines.zones.footprints import look_round, note_footprint, put_footprints
 from checker.engines.zones.location_views import (
     ACTORS,
     AGENTS,
@@ -43,6 +42,7 @@ from checker.engines.zones.location_views import (
     LocationView,
     find_steps,
 )
+from checker.engines.zones.step_footprints import look_round, note_footprint, put_footprints
 from checker.engines.zones.timed_automaton import DEADLINE, EDGE, LOCATION, TEST
 from semantics.timing.actor_clocks import BOUND
 from semantics.timing.actor_clocks import FREE as UNBOUND

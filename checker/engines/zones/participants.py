@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from checker.engines.fast.arrays import Growing
 from checker.engines.fast.decision_leaves import COPIES, COPIES_END, PAIR, STEP, WRITES, WRITES_END
-from checker.engines.zones.footprints import LearnedFootprints
+from checker.engines.zones.step_footprints import LearnedFootprints
 from checker.engines.zones.timed_automaton import EDGE, FOOTPRINT, TimedAutomaton
 
 if TYPE_CHECKING:
@@ -40,7 +40,6 @@ class Participants:
         self.automaton = automaton
         self.sizes = sizes
         self.total = sum(sizes)
-        self.words = 0
         self.begin()
 
     def begin(self) -> None:
@@ -48,11 +47,15 @@ class Participants:
         self.words = max(2 * (len(self.learner.columns) // WORD + 1), 4)
         self.reads, self.writes, self.copies = (Growing(np.uint64) for _ in range(3))
         self.touched, self.wrote = (np.zeros(self.total * self.words, np.uint64) for _ in range(2))
+        self.epoch = self._epoch
+        self.see()
+        self._count()
+
+    def _count(self) -> None:
+        """Begin to number footprints."""
         self.numbers: dict[bytes, int] = {}
         self.found: list[bytes] = []
-        self.epoch = self._epoch
         self.division: tuple[NDArray[np.int64], NDArray[np.int64]] | None = None
-        self.see()
         self.divide()
 
     @property
@@ -88,7 +91,7 @@ class Participants:
         agents, clauses, _ = self.sizes
         writing = np.zeros(len(self.learner.trees.root), np.int8)
         writing[list(self.learner.writing_trees)] = 1
-        size = self._size
+        size = self.size
         scratch = (np.zeros(each, np.uint64) for each in (size, self.words, self.words))
         self.fresh = np.zeros(edges * size, np.uint64)
         known = (self.reads.room, self.writes.room, self.copies.room, writing, self.touched, self.wrote)
@@ -98,7 +101,7 @@ class Participants:
         )
 
     @property
-    def _size(self) -> int:
+    def size(self) -> int:
         """The words of a footprint."""
         return self.words + (self.total + WORD - 1) // WORD
 
@@ -106,7 +109,7 @@ class Participants:
         """Give the new edges the numbers of their footprints."""
         if end <= begun:
             return
-        size = self._size
+        size = self.size
         rows = self.fresh[: (end - begun) * size].reshape(-1, size)
         kinds, which = np.unique(rows, axis=0, return_inverse=True)
         numbers = np.array([self._number(each.tobytes()) for each in kinds], np.int32)
@@ -126,11 +129,12 @@ class Participants:
         touched, wrote = self._bits(self.touched), self._bits(self.wrote)
         begin = sum(self.sizes[:2])
         home = np.arange(self.total)
-        for vehicle in range(begin, self.total):
+        for vehicle in range(begin, begin + self.sizes[2]):
             writers = np.flatnonzero((wrote[:begin] & touched[vehicle]).any(axis=1))
             home[vehicle] = writers[0] if len(writers) == 1 else begin if len(writers) else 0
             if len(writers) > 1:
                 home[vehicle] = -1
+        home[begin + self.sizes[2] :] = -1
         own = np.flatnonzero(home == -1)
         home[own] = begin + np.arange(len(own))
         joined = np.zeros((begin + len(own), touched.shape[1]), np.bool_)
@@ -161,8 +165,8 @@ class Participants:
         if not new or division is None:
             return
         home, cells = division
-        bits = self._bits(np.frombuffer(b"".join(new), np.uint64), self._size)
-        begin = WORD * (self._size - self.words)
+        bits = self._bits(np.frombuffer(b"".join(new), np.uint64), self.size)
+        begin = WORD * (self.size - self.words)
         for each in bits:
             columns = cells[each[begin:]]
             members = np.union1d(home[each[: self.total]], columns[columns >= 0])
@@ -173,3 +177,51 @@ class Participants:
         rows = words.reshape(-1, self.words if size is None else size)
         found: Bits = np.unpackbits(rows.view(np.uint8), axis=1, bitorder="little").astype(np.bool_)
         return found
+
+
+class WatchedParticipants(Participants):
+    """The participants of the edges of an automaton with an observer, which is a process that reads more columns.
+
+    Attributes:
+        base: Those without the observer.
+        kinds, kind_of: The sets of columns that the observer reads, and that of each of the mission's locations.
+        process: The observer.
+    """
+
+    def __init__(self, base: Participants, automaton: TimedAutomaton, reads: NDArray[np.uint64]) -> None:
+        self.base = base
+        self.learner, self.words, self.sizes, self.total = (
+            base.learner,
+            base.words,
+            base.sizes,
+            base.total + 1,
+        )
+        self.automaton = automaton
+        kinds, which = np.unique(reads, axis=0, return_inverse=True)
+        self.kinds = [int.from_bytes(each.tobytes(), "little") for each in kinds]
+        self.kind_of = which.ravel().tolist()
+        self.touched = np.concatenate((base.touched, np.bitwise_or.reduce(kinds, axis=0)))
+        self.wrote = np.concatenate((base.wrote, np.zeros(self.words, np.uint64)))
+        self.known: dict[tuple[int, int, int], int] = {}
+        self._count()
+        assert self.division is not None
+        self.process = int(self.division[0][-1])
+
+    def footprint(self, number: int, source: int, target: int) -> int:
+        """Return the number of a footprint with the observer, for an edge between two of the mission's locations."""
+        key = number, self.kind_of[source], self.kind_of[target]
+        if key not in self.known:
+            before, after = (self.kinds[each] for each in key[1:])
+            begin = WORD * (self.base.size - self.words)
+            whole = int.from_bytes(self.base.found[number], "little")
+            members, columns = whole & ((1 << begin) - 1), whole >> begin
+            if columns & before:
+                members |= 1 << self.base.total
+                columns |= before ^ after
+            begin = WORD * (self.size - self.words)
+            self.known[key] = self._number((members | columns << begin).to_bytes(8 * self.size, "little"))
+        return self.known[key]
+
+    def join(self) -> None:
+        """Note the participants of all edges."""
+        self._join()

@@ -5,7 +5,7 @@ maps each clock of its target to the clock of its source that continues in it, o
 are dropped.
 """
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import NamedTuple
@@ -36,12 +36,14 @@ class Edge(NamedTuple):
         tests: Its guard, a conjunction.
         target: The target location.
         sources: For each clock of the target the clock that continues in it, 0 for a reset one.
+        footprint: The number of its footprint in local time.
     """
 
     step: int
     tests: tuple[Constraint, ...]
     target: int
     sources: tuple[int, ...]
+    footprint: int = NONE
 
 
 class Location(NamedTuple):
@@ -126,12 +128,14 @@ class TimedAutomaton:
         self.lower.room[clock], self.upper.room[clock] = after
         return after != before
 
-    def add(self, location: Location) -> int:
-        """Return the number of a new location, its edges still unknown."""
+    def add(self, location: Location, deadlines: Iterable[Sequence[int]] | None = None) -> int:
+        """Return the number of a new location, its edges still unknown; with `deadlines`, those of processes."""
         begin = len(self.deadlines) // DEADLINE
-        for each in location.deadlines:
-            _look(each[1])
-            self.deadlines.append(*each, 0)
+        for clock, most, process in (
+            ((*each, 0) for each in location.deadlines) if deadlines is None else deadlines
+        ):
+            _look(most)
+            self.deadlines.append(clock, most, process)
         end = len(self.deadlines) // DEADLINE
         clocks = self.clocks.append(*location.clocks)
         goal, least = (NONE, 0) if location.goal is None else location.goal[:2]
@@ -143,35 +147,41 @@ class TimedAutomaton:
     def leave(self, location: int, edges: Iterable[Edge]) -> None:
         """Set the edges of a location, in the order of their steps."""
         begin = len(self.edges) // EDGE
-        for step, tests, target, sources in edges:
+        for step, tests, target, sources, footprint in edges:
             first = len(self.tests) // TEST
             for test in tests:
                 self.tests.append(*test)
             at = self.sources.append(*sources)
-            self.edges.append(step, target, first, len(self.tests) // TEST, at, NONE, NONE, NONE)
+            self.edges.append(step, target, first, len(self.tests) // TEST, at, NONE, NONE, footprint)
         self._record(location)[EDGES : EDGES_END + 1] = begin, len(self.edges) // EDGE
 
     def location(self, number: int) -> Location:
         """Return a location."""
-        size, clocks, begin, end, _, _, goal, least = self._record(number).tolist()
+        size, clocks, _, _, _, _, goal, least = self._record(number).tolist()
         deadlines: dict[int, int] = {}
-        for clock, most, _ in (
-            self.deadlines.room[DEADLINE * begin : DEADLINE * end].reshape(-1, DEADLINE).tolist()
-        ):
+        for clock, most, _ in self.deadlines_of(number):
             deadlines[clock] = min(most, deadlines.get(clock, most))
         numbers = self.clocks.room[clocks : clocks + size - 1].tolist()
         sought = None if goal < 0 else Constraint(goal, least)
         return Location(tuple(numbers), tuple(deadlines.items()), sought)
+
+    def deadlines_of(self, location: int) -> list[list[int]]:
+        """Return the deadlines of a location: the clock, its bound, and the process of each."""
+        begin, end = self._record(location)[DEADLINES : DEADLINES_END + 1].tolist()
+        found: list[list[int]] = (
+            self.deadlines.room[DEADLINE * begin : DEADLINE * end].reshape(-1, DEADLINE).tolist()
+        )
+        return found
 
     def out(self, location: int) -> list[Edge]:
         """Return the edges of a location; none before they are worked out."""
         return [self._edge(each) for each in self._edges(location).tolist()]
 
     def _edge(self, record: list[int]) -> Edge:
-        step, target, begin, end, at = record[: SOURCES + 1]
+        step, target, begin, end, at, _, _, footprint = record
         tests = self.tests.room[TEST * begin : TEST * end].reshape(-1, TEST).tolist()
         sources = self.sources.room[at : at + self._record(target)[SIZE] - 1].tolist()
-        return Edge(step, tuple(Constraint(*each) for each in tests), target, tuple(sources))
+        return Edge(step, tuple(Constraint(*each) for each in tests), target, tuple(sources), footprint)
 
     def _record(self, location: int) -> NDArray[np.int32]:
         return self.locations.room[LOCATION * location : LOCATION * (location + 1)]

@@ -40,15 +40,16 @@ class Search:
 
     Attributes:
         automaton: The searched automaton.
+        is_local: Whether each process has a date; else there is one clock.
         state: The state of the loops.
         layers: The first zone of each layer.
     """
 
-    is_local = False
-    """Whether each process has a date; else there is one clock."""
-
-    def __init__(self, automaton: TimedAutomaton, location: int, ages: Sequence[int]) -> None:
+    def __init__(
+        self, automaton: TimedAutomaton, location: int, ages: Sequence[int], *, is_local: bool = False
+    ) -> None:
         self.automaton = automaton
+        self.is_local = is_local
         self.begins, self.sums, self.dated_from = (Growing(np.int64) for _ in range(3))
         self.bounds, self.places, self.following, self.dated = (Growing(np.int32) for _ in range(4))
         self.heads, self.groups, self.ranks = (Growing(np.int32) for _ in range(3))

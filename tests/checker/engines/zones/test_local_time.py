@@ -61,7 +61,7 @@ def only_who_steps(participants, begun, end):
         actor = learner.whose[int(edges[at + LEARNED])]
         assert isinstance(actor, TransitionGroup)
         bits = 1 << owners.index(actor.about)
-        edges[at + FOOTPRINT] = participants._number(bits.to_bytes(8 * participants._size, "little"))
+        edges[at + FOOTPRINT] = participants._number(bits.to_bytes(8 * participants.size, "little"))
     participants._join()
 
 
