@@ -8,7 +8,7 @@ from pathlib import Path
 from bigactors.files import read_bytes
 from bigactors.mistakes import Mistake
 from physical import GeoJSONError, Geometry, PhysicalError, PhysicalProperty, box, check_places, contains
-from physical.ais_recording import has_sentences, read_recording
+from physical.ais_recording import read_recording, without_sentences
 from physical.ais_reports import AisError
 from physical.ais_world import check_time, seen_at
 from physical.file_account import FileAccount, Read
@@ -98,10 +98,7 @@ def _found(path: str, time: float | None, doubts: list[str]) -> Read:
     if suffix in PLACES:
         return read_place_file(suffix, read_bytes(path, MAX_BYTES))
     recording = read_recording(path)
-    if recording.tally.total and not has_sentences(recording.tally):
-        found = (
-            f"none of its {recording.tally.total:,} lines is an AIS sentence, or has one in it (!AIVDM,...)"
-        )
+    if found := without_sentences(recording.tally):
         raise Mistake(found, f"give an AIS recording, or places in a file called {', '.join(PLACES)}", path)
     try:
         check_time(recording, time)

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Protocol, assert_never
 from checker.engines.capabilities import CombinationError, engines, features, require
 from checker.engines.choose import explore_by
 from checker.engines.contract import Cluster, Engine, Exploration, Keeping, Options, Reporter, ZoneClock
+from checker.engines.original_run import in_original_names
 from checker.handover import Compilation, Handover
 from checker.limits import BoundMet, CheckPart, Limits, Stop, bounded
 from checker.properties.assumed_ways import assumed_ways
@@ -27,7 +28,6 @@ from checker.properties.inspections import (
 from checker.properties.ownership import owned
 from checker.properties.races import ControlRaces, StaleObservationRaces
 from checker.properties.visited_statements import Visited
-from checker.reduction.original_run import in_original_names
 from checker.reduction.refusals import Reduction, RefusedError
 from checker.traces import Trace, trace_of, trace_to
 from checker.verdicts import Outcome, Report, Verdict, Verdicts, Violation

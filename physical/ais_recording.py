@@ -104,6 +104,15 @@ def has_sentences(tally: FileAccount) -> bool:
     )
 
 
+def without_sentences(tally: FileAccount) -> str | None:
+    """Return a message about lines of which none has a sentence of AIS, with what they are; None if one has."""
+    if not tally.total or has_sentences(tally):
+        return None
+    kinds = sorted(tally.left_out, key=lambda each: -each[1])[:3]
+    found = ", ".join(f"{count:,} x {kind}" for kind, count in kinds)
+    return f"none of its {tally.total:,} lines is an AIS sentence, or has one in it (!AIVDM,...): {found}"
+
+
 _IN_SENTENCES: Final = frozenset(
     {
         DecodingFailure.NOT_AVAILABLE,

@@ -386,11 +386,27 @@ def missing_unit(at: ParsePoint) -> Diagnostic | None:
     return None
 
 
+_STEPS: Final = {
+    "send": "write snd, its delivery; or req_snd, its request",
+    "observe": "write sense, its answer; or req_obs, its request",
+    "control": "write actuate, or command and commit for flights; or req_ctr, its request",
+    "react": "write rcv_obs or rcv_msg, what it receives",
+    "after": "write timeout",
+}
+
+
 def reserved_word(at: ParsePoint) -> Diagnostic | None:
     """`let if = 3`."""
     if at.found.text == "for" and "forall" in at.accepted:
         hint = "write forall u: Kind . formula"
         return at.mistake(Code.MISSPELT_KEYWORD, "'for' is not a word of the language here", hint)
+    meant = _STEPS.get(at.found.text) if "environment" in at.accepted else None
+    if at.found.text == "to" and at.before.text == "linked":
+        meant = f"write linked {at.following.text}"
+    if meant:
+        return at.mistake(
+            Code.MISSPELT_KEYWORD, f"{at.found.shown} is not a word of the language here", meant
+        )
     if (
         at.found.text in RESERVED
         and at.sorts & {"NAME", "CHANNEL"}

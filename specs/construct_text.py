@@ -22,7 +22,9 @@ _ATOM: Final = 8
 @singledispatch
 def write(node: s.Node) -> str:
     """Return the canonical text of a node that fits on one line."""
-    raise TypeError(f"{type(node).__name__} does not fit on one line")
+    if isinstance(node, s.Node):
+        raise TypeError(f"{type(node).__name__} does not fit on one line")
+    raise TypeError(f"{node!r} is no part of a tree: a name is Name('uav0'), a length Length(300, 'm')")
 
 
 def inner(node: s.Node, least: int) -> str:

@@ -93,9 +93,19 @@ def late_deadline(at: ParsePoint) -> Diagnostic | None:
     return Diagnostic(Code.UNEXPECTED, at.before.span, "'within' and a duration begin no formula", hint)
 
 
+def claim_by_at(at: ParsePoint) -> Diagnostic | None:
+    """`uav0 at west0`: read as the claim `uav0 at least ...`."""
+    who = word_before(at.prepared.text, at.before.span.start).text
+    if at.accepted != {"least"} or at.before.text != "at" or who in ("take", "takes") or not at.found.is_name:
+        return None
+    message, hint = "'at' is not a word of the language here", f"write in: {who} in {at.found.text}"
+    return Diagnostic(Code.MISSPELT_KEYWORD, at.before.span, message, hint)
+
+
 DISTANCE_MISTAKES: Final[tuple[Callable[[ParsePoint], Diagnostic | None], ...]] = (
     foreign_length,
     distance_bound,
+    claim_by_at,
     spare_away,
     negated_place,
     late_deadline,

@@ -6,9 +6,8 @@ from typing import Any, Final
 
 from adapters.console.console_view import Json, Section
 from adapters.console.facts import Facts
-from adapters.console.mutable_facts import Draft
+from adapters.console.mutable_facts import Draft, tick
 from adapters.console.parsing import text, texts
-from adapters.console.ticks import tick
 
 MOST: Final = 1_000
 

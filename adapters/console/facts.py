@@ -61,7 +61,7 @@ class Standing:
         rules: The rules of its mission.
         configuration: ⟨α | S | η⟩.
         change: The last change of its L or P.
-        heads: The requests at the heads of lines, and the start of their waits, as in `adapters.live.request_timeouts`.
+        heads: The requests at the heads of lines, and the start of their waits, as in `adapters.live.fallbacks`.
     """
 
     rules: Rules

@@ -1,4 +1,4 @@
-"""The fates of operators' orders to hold or to return, by the run's words: asked, sent, confirmed or refused.
+"""The fates of operators' orders, by the run's words: asked, sent, confirmed or refused; vehicles given back.
 
 The run repeats an order that a vehicle has refused. The order stays refused until the vehicle shows that it obeys.
 """
@@ -12,11 +12,46 @@ from typing import Any, Final
 from adapters.console.console_view import Json
 from adapters.console.facts import OrderState
 from adapters.console.mutable_facts import MOST_VEHICLES, Draft
-from adapters.console.operator_actions import MOST_NAMED, act
+from adapters.console.operator_actions import MOST_NAMED, act, settle
 from adapters.console.parsing import text, texts
 from adapters.live.command_planning import stopping
 from adapters.live.overrides import Fate, StandingOrder
 from semantics.live_policy import Fallback
+
+
+def take_giving_back(draft: Draft, time: float, data: Any) -> None:
+    """Take in an operator's give-back of a vehicle, or its new address."""
+    match data:
+        case {"vehicle": str(name), "at": str(at), **rest}:
+            number = act(draft, time, rest, f"is at {text(at)}", text(name), "sent")
+            if not rest.get("refusal"):
+                draft.rebinds[name] = (draft.rebinds.get(name, ("", ""))[0], number)
+        case {"vehicle": str(name)}:
+            act(draft, time, data, "give back", text(name))
+            if not data.get("refusal"):
+                draft.taken.pop(name, None)
+                end(draft, time, name, "then it was given back")
+
+
+def rebind(draft: Draft, name: str, request: str) -> None:
+    """Note the command to accept a vehicle from a new address; the operator's order follows in the recording."""
+    draft.rebinds[name] = (request, "")
+    draft.rebinds.bounded(MOST_VEHICLES)
+
+
+def rebound(draft: Draft, time: float, name: str) -> None:
+    """Note that a vehicle is heard again; this confirms a pending change of its address."""
+    _, number = draft.rebinds.pop(name, ("", ""))
+    settle(draft, time, number, "confirmed")
+
+
+def not_rebound(draft: Draft, time: float, name: str, request: str, why: str) -> None:
+    """Note that the change of a vehicle's address is refused, and why."""
+    known, number = draft.rebinds.get(name, ("", ""))
+    if number and known == request:
+        draft.rebinds.pop(name)
+        settle(draft, time, number, "refused", why)
+
 
 MOST_LISTED: Final = 4
 """The most vehicles whose names stand for the addressees of an order."""

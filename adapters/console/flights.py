@@ -8,8 +8,7 @@ from typing import Any, Final
 
 from adapters.console.console_view import Json
 from adapters.console.facts import Link, Position, VehicleCommand
-from adapters.console.fates import confirm, end, refuse, sent
-from adapters.console.giving_back import not_rebound, rebind, rebound
+from adapters.console.fates import confirm, end, not_rebound, rebind, rebound, refuse, sent
 from adapters.console.mutable_facts import MOST_VEHICLES, Draft, Table
 from adapters.console.parsing import count, number, text, texts
 from adapters.console.station_list import obeys

@@ -46,18 +46,6 @@ class Drawing(Protocol):
         """Begin to draw it, and return whether it has begun; False while another picture is in progress."""
 
 
-class Undrawn:
-    """A drawer that draws nothing."""
-
-    def drawn(self, _change: Change) -> str | None:
-        """Return nothing."""
-        return None
-
-    def begin(self, _change: Change) -> bool:
-        """Begin nothing."""
-        return False
-
-
 @dataclass(frozen=True, slots=True)
 class Checkpoint:
     """The facts up to a place in the recording."""
@@ -85,7 +73,7 @@ class History:
         self.path = path
         self._reader = McapReader(path, unread=(OTHERS,))
         self.opening = opening
-        self._drawing: Drawing = Undrawn() if drawing is None else drawing
+        self._drawing = drawing
         self._live = live
         self.behind = True
         self.trouble = ""
@@ -221,8 +209,8 @@ def _time_of(checkpoint: Checkpoint) -> float:
 class BrowserDisplay:
     """The view of one browser; unchanged values stay the same objects."""
 
-    def __init__(self, drawing: Drawing) -> None:
-        """Show nothing yet."""
+    def __init__(self, drawing: Drawing | None) -> None:
+        """Show nothing yet; without a drawer, L is never drawn."""
         self._drawing = drawing
         self._shown: tuple[Facts, Facts, Json] | None = None
         self._now = 0.0
@@ -243,19 +231,19 @@ class BrowserDisplay:
 
     def _drawn(self, facts: Facts) -> Json:
         """Return the newest finished picture of L, and begin the next one."""
-        if facts.standing is None:
+        if facts.standing is None or self._drawing is None:
             return self._picture
         change = facts.standing.change
         for each in (self._begun, change):
             if each is not None and each is not self._pictured:
-                self._take(each)
+                self._take(each, self._drawing)
         if change is not self._pictured and self._begun is None and self._drawing.begin(change):
             self._begun = change
         return self._picture
 
-    def _take(self, change: Change) -> None:
+    def _take(self, change: Change, drawing: Drawing) -> None:
         """Show the picture after a change, if it is ready."""
-        svg = self._drawing.drawn(change)
+        svg = drawing.drawn(change)
         if svg is not None:
             self._picture = {"svg": svg or None, "drawn": change.number}
             self._pictured, self._begun = change, None

@@ -1,7 +1,8 @@
-"""Mutable facts for the fold: it writes into copies, so that the frozen facts of others never change."""
+"""Mutable facts for the fold: it writes into copies, so that the frozen facts of others never change; and ticks."""
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator, Mapping, MutableMapping
 from dataclasses import fields
 from typing import Any, Final, TypeVar
@@ -133,3 +134,17 @@ def _whole(value: Any) -> Any:
 
 
 _NAMES = tuple(each.name for each in fields(Facts))
+
+
+MOST_TICKS: Final = 2_000
+
+
+def tick(draft: Draft, time: float, sort: str) -> None:
+    """Add a tick; above `MOST_TICKS`, every second tick of the commonest sort is dropped."""
+    draft.ticked += 1
+    draft.ticks[str(draft.ticked)] = (time, sort)
+    if len(draft.ticks) > MOST_TICKS:
+        ((commonest, _),) = Counter(said for _, said in draft.ticks.values()).most_common(1)
+        numbers = [number for number, (_, said) in draft.ticks.items() if said == commonest]
+        for number in numbers[1::2]:
+            del draft.ticks[number]

@@ -6,9 +6,8 @@ from typing import Any, Final
 
 from adapters.console.alerts import vanity
 from adapters.console.console_view import Json
-from adapters.console.mutable_facts import Draft
+from adapters.console.mutable_facts import Draft, tick
 from adapters.console.parsing import text, texts
-from adapters.console.ticks import tick
 
 MOST: Final = 500
 MOST_NAMED: Final = 1_000

@@ -258,7 +258,7 @@ def _on_channel(turning: Turning, entity: Name, channel: Name) -> None:
     if observe(turning, sight, happening(turning.c, sight)) and not back:
         breaks(
             turning,
-            f"{entity} is on {channel}; it was not handed over there, and the mission does not let it return",
+            f"{entity} is on {channel}; the mission neither links it there, nor hands it over, nor lets it return",
             entity,
         )
 

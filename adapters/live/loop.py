@@ -16,14 +16,13 @@ from collections import OrderedDict
 from collections.abc import Callable, Container, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
-from adapters.live.batch import Batch, Heard, Said, Saying
+from adapters.live.batch import Batch, Heard, Said, Saying, flaw_of, legible_report
 from adapters.live.core import advance, is_over, is_refused, watch
 from adapters.live.live_state import LiveState
 from adapters.live.operator_findings import Finding
 from adapters.live.plan import Plan
 from adapters.live.run_watchers import Watcher, Watchers
 from adapters.live.turn_result import Answer, Turn
-from adapters.live.validation import flaw_of, legible_report
 from adapters.plugin import (
     Command,
     Failed,
@@ -42,8 +41,8 @@ from adapters.plugin import (
     Status,
     entity_of,
 )
+from adapters.rate_limit import Troubles
 from adapters.silence_clock import Listening
-from adapters.trouble_throttle import Troubles
 from physical import is_text
 
 GATHER = 0.002
@@ -241,6 +240,11 @@ def settle() -> None:
     gc.set_threshold(10_000, 20, 50)
 
 
+def _without_fallbacks(turn: Turn) -> Turn:
+    """Return a turn before an unverified run, which begins in spite of its findings: nothing holds or returns."""
+    return replace(turn, findings=tuple(replace(each, fallback="") for each in turn.findings))
+
+
 class LiveRun:
     """One run of a mission with plugins: `begin` waits for the world, `go` flies."""
 
@@ -295,12 +299,12 @@ class LiveRun:
             broken = [finding for finding in turn.findings if finding.kind == "broken assumption"]
             if broken and not forced:
                 raise NotAsAssumed(broken)
-            self._take(turn)
+            self._take(_without_fallbacks(turn) if forced else turn)
             for failed in self._watchers.failures():
                 raise PluginFailed(f"{failed.source}: {failed.reason}")
         self._begun = True
         if forced:
-            overrides = self.state.overrides.lifted()  # an unverified run has reported the differences
+            overrides = self.state.overrides.lifted()
             self.state = replace(self.state, overrides=overrides)
         for given in self.state.commanded:
             if given.command.entity not in self.state.overrides.taken:  # a resumed run has compared it

@@ -15,9 +15,8 @@ from adapters.live.live_state import LiveState
 from adapters.live.turn_result import Turn
 from adapters.plugin import Report
 from adapters.ros.position_messages import FIX, STRING, WHERE, hash_of, write_fix, write_string, write_where
-from adapters.ros.publisher import Publisher
 from adapters.ros.ros_node import open_session, read_address
-from adapters.ros.wire import Topic, node_token
+from adapters.ros.wire import Publisher, Topic, node_token
 from physical import PhysicalError, centroid
 from semantics.state.logical_model import LogicalModel
 

@@ -37,6 +37,7 @@ from adapters.plugin import (
     World,
     entity_of,
 )
+from adapters.rate_limit import Troubles
 from adapters.silence_clock import Listening
 from adapters.stations.authority import Authority, is_silent
 from adapters.stations.bus import Bus
@@ -54,13 +55,11 @@ from adapters.stations.entries import (
     stamped,
 )
 from adapters.stations.journal import Journal
-from adapters.stations.logical_digest import logical_digest
 from adapters.stations.merge import ABREAST, MOST_ENTITIES, Merge, channels_of, on
 from adapters.stations.outgoing import believed, entered, moved, told
 from adapters.stations.peers import Peers
-from adapters.stations.remote_station import SETTLED, Other
+from adapters.stations.remote_station import SETTLED, Other, logical_digest, measured
 from adapters.stations.shared_plugin import Shared
-from adapters.stations.skew import measured
 from adapters.stations.station_messages import (
     MOST_BYTES,
     MOST_ENTRIES,
@@ -69,7 +68,6 @@ from adapters.stations.station_messages import (
     fitting,
     read,
 )
-from adapters.trouble_throttle import Troubles
 from adapters.typed_json import read_typed
 from physical import PhysicalError
 from semantics.state.logical_model import LogicalModel

@@ -87,6 +87,8 @@ def _unrealised(c: Configuration, request: CTR | FLY) -> Iterator[str]:
                 yield f"{node} would be in no place: a vehicle needs a place to go to"
             elif not setting.signature[setting.kind(node)].driven:
                 by = physical.carrier(node)
-                yield f"nothing drives {node}" + (f", and {by}, which carries it, is not there" if by else "")
+                yield f"nothing drives {node}" + (
+                    f", and {by}, which carries it, is not in {place}" if by else ""
+                )
             else:
                 yield f"{place} has no position for {node} outside its smaller places"

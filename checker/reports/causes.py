@@ -45,12 +45,12 @@ def causes_of(
         return ()
     if trace.race is not None:
         sensed, changed, acted = trace.race
-        actor = trace.steps[acted - 1].label.agent
+        looker, actor = (trace.steps[number - 1].label.agent for number in (sensed, acted))
         deed = _words(trace, acted).removesuffix(f", as {actor} wants")
         texts = (
             _words(trace, sensed),
             _words(trace, changed),
-            f"{actor} acts on what it saw: {deed}",
+            f"{actor} acts on what {'it' if looker == actor else looker} saw: {deed}",
         )
         return tuple(map(Cause, (sensed, changed, acted), texts))
     if violation is None:

@@ -90,7 +90,7 @@ def _effect(change: Difference) -> str:
     if target.startswith("on the way to "):
         return f"{name} sets off for {target.removeprefix('on the way to ')}"
     if origin.startswith("on the way to "):
-        return f"{name} arrives {target}"
+        return f"{name} arrives {target.replace('carried by', 'aboard')}"
     if origin.startswith("in ") and target.startswith("in "):
         return f"{name} moves from {origin[3:]} to {target[3:]}"
     return f"{name} is {target}"

@@ -104,7 +104,7 @@ def move(host: Name, entity: Name, place: Name) -> Sides:
 
 
 def put(host: Name, entity: Name, place: Name) -> Sides:
-    """Put a child of the host, `h.(x | $0)`, where the host is, or into a carrier there."""
+    """Put a child of the host, `h.(x | $0)`, where the host is, or into a carrier of the host or aboard it."""
     nodes = (host, entity, place)
     return Pattern(nodes, ((entity, host),)), Pattern(nodes, ((entity, place),))
 

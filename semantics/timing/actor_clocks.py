@@ -17,6 +17,7 @@ from semantics.behaviours.statements import React
 from semantics.bigactor_rules import channels_between
 from semantics.environment import Drops, Leaves
 from semantics.state.configuration import Configuration, Transition
+from semantics.state.physical_model import InTransit
 from semantics.state.requests import CTR, FLY, MGR, OBS, SND, Request
 from semantics.state.signature import Name
 from semantics.timing.flight_times import aim, interval_of_flight
@@ -140,21 +141,20 @@ def of_vehicle(c: Configuration, vehicle: Name) -> ActorClocks:
 
 
 def is_restored(c: Configuration, vehicle: Name) -> bool:
-    """Whether a vehicle is at a place that restores it; a vehicle in transit is at no place."""
-    physical, places = c.structure.physical, dict(timing_of(c).endurances)[vehicle].places
-    if vehicle not in physical or physical.transit(vehicle) is not None:
-        return False
+    """Whether a vehicle is at a place that restores it, or aboard a carrier that does, also on its way."""
+    places = dict(timing_of(c).endurances)[vehicle].places
     return any(place in places for place in _around(c, vehicle))
 
 
 def _around(c: Configuration, entity: Name) -> Iterator[Name]:
-    """Yield the places around an entity in A(P), the innermost first."""
-    seen: set[Name] = set()
-    place = c.structure.physical.abstract_parent(entity)
-    while place in c.structure.physical and place not in seen:
-        yield place
-        seen.add(place)
-        place = c.structure.physical.abstract_parent(place)
+    """Yield the carriers and places around an entity in A(P), the innermost first; nothing is around a flight."""
+    physical, seen = c.structure.physical, set[Name]()
+    while entity in physical and not isinstance(physical.placement(entity), InTransit):
+        entity = physical.abstract_parent(entity)
+        if entity in seen or entity not in physical:
+            return
+        yield entity
+        seen.add(entity)
 
 
 # --- requests -------------------------------------------------------------------------------------

@@ -19,6 +19,7 @@ from semantics.behaviours.reaction_rules import moved
 from semantics.brr_driver import stops
 from semantics.control import commits
 from semantics.environment import Drifts
+from semantics.fixpoints import closure
 from semantics.regions.possible_moves import may_move
 from semantics.state.cell_values import VOYAGE, Cell, Changes
 from semantics.state.configuration import Configuration, Transition
@@ -80,11 +81,9 @@ def _remembered(setting: Setting) -> tuple[Name, ...]:
 
 def _drifting_cargo(setting: Setting) -> Iterator[Name]:
     """Yield the entities that may be aboard an entity that drifts within a place."""
-    waiting, kinds = [setting.kind(each.entity) for each in _adrift(setting)], set[str]()
-    while waiting:
-        more = setting.signature[waiting.pop()].carries - kinds
-        kinds |= more
-        waiting += more
+    drifting = {setting.kind(each.entity) for each in _adrift(setting)}
+    first = (cargo for kind in drifting for cargo in setting.signature[kind].carries)
+    kinds = closure(first, lambda kind: setting.signature[kind].carries)
     return (name for name, kind in setting.kinds.items() if kind in kinds)
 
 

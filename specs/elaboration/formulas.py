@@ -121,6 +121,10 @@ class FormulaElaborator:
         """Return a formula as a proposition; reports its mistakes, and a bound that it exceeds."""
         if self.full:
             return Always(True)
+        if invariant and isinstance(formula, s.PathPrefix) and formula.operator in ("always", "[]"):
+            message = "an invariant is about every configuration by itself"
+            self.names.findings.add(Code.WRONG_LOGIC, formula, message, "leave the operator in front out")
+            return Always(True)
         try:
             return self.proposition(formula, Context(unbound=invariant, is_alone=True))
         except TooLarge as error:

@@ -253,7 +253,7 @@ def load_mission(mission: str | Path, variation: Variation = AS_WRITTEN) -> Elab
     Raises:
         MissionError: There is no such mission, it cannot be read, or it has mistakes; lists them all.
     """
-    path = find_mission(mission) if isinstance(mission, str) else mission
+    path = find_mission(mission) if isinstance(mission, str) else Path(mission)
     try:
         with open_file(path) as file:
             data = file.read(MAX_BYTES + 1)
@@ -280,6 +280,10 @@ def read_mission(
     """
     if isinstance(text, s.Mission):
         text = _written(text)
+    if not isinstance(text, str):
+        raise TypeError(
+            f"read_mission takes a text or a Mission, and load_mission a file: {text!r} is neither"
+        )
     return _elaborated(decode(name, text.encode("utf-8", "surrogatepass")), Path(directory), variation)
 
 
@@ -318,6 +322,8 @@ def find_mission(word: str) -> Path:
             word, "this is the text of a mission, not its path", "write it to a file, and give its path"
         )
     near = Findings(Source(word, "")).suggest(word, shipped) if "/" not in word else ""
+    if reason == "there is no such file" and Path(f"{word}.mission").is_file():
+        near = f"did you mean '{word}.mission'?"
     otherwise = "give the path of a mission, or the name of one that ships: " + ", ".join(shipped)
     raise _unreadable(word, reason, near or otherwise)
 

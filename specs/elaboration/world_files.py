@@ -141,7 +141,7 @@ def _places(suffix: str, path: Path) -> Read:
 
 
 def _ais(entry: s.FromSource, path: Path, area: Geometry | None) -> Read:
-    from physical.ais_recording import has_sentences, read_recording  # noqa: PLC0415 - few worlds are recordings
+    from physical.ais_recording import read_recording, without_sentences  # noqa: PLC0415 - few are recordings
     from physical.ais_reports import AisError  # noqa: PLC0415
     from physical.ais_world import check_time, seen_at  # noqa: PLC0415
 
@@ -149,8 +149,7 @@ def _ais(entry: s.FromSource, path: Path, area: Geometry | None) -> Read:
     time = None if entry.time is None else _seconds(entry.time.value)
     try:
         recording = read_recording(path)
-        if recording.tally.total and not has_sentences(recording.tally):
-            found = f"none of its {recording.tally.total:,} lines is an AIS sentence, or has one in it (!AIVDM,...)"
+        if found := without_sentences(recording.tally):
             raise UnusableFileError(Code.BAD_FILE, found, "give a recording of AIS")
         check_time(recording, time)
         return seen_at(recording, time, area, kinds)

@@ -62,7 +62,7 @@ class Lasting(Node):
     """`uav0 lasts 45 min, restored in airfield0, base0 after 20 min`.
 
     The endurance of a vehicle, or of each vehicle of a kind: its longest time away from the places that restore it.
-    After the given time in one of these places, its endurance is restored.
+    After the given time in one of these places, its endurance is restored. A carrier restores it on its way, too.
     """
 
     name: Name

@@ -36,8 +36,8 @@ from adapters.static_places import StaticPlaces
 from adapters.stations.shared_plugin import Shared
 from adapters.stations.station_plugin import Sharing
 from adapters.web import Listen
+from bigactors.arguments.values import LIVING
 from bigactors.commands.run import feeds
-from bigactors.commands.run.option_values import LIVING
 from bigactors.testing import Connection, PluginContract, opened
 from physical import PhysicalProperty, box, circle, write_geojson
 

@@ -170,6 +170,10 @@ def test_a_trace_has_its_mission_in_any_folder_and_after_any_change(
     ("text", "said"),
     [
         ("", "the text is not JSON"),
+        (
+            "mission m",
+            "hint: give a trace.json that check --trace wrote, or a recording that run --record wrote",
+        ),
         ("[" * 100_000, "the text is nested too deeply"),
         ("[]", "the file names no mission"),
         ('{"mission": 3}', "the file names no mission"),

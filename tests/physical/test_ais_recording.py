@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from physical.ais_recording import PIECES, has_sentences, read_recording
+from physical.ais_recording import PIECES, has_sentences, read_recording, without_sentences
 from physical.ais_reports import AisError
 from physical.file_account import FileAccount
 from physical.nmea import MAX_LINE, DecodingFailure
@@ -194,6 +194,9 @@ def test_a_damaged_tag_block_is_counted_beside_its_sentence():
 def test_a_file_without_sentences_of_ais_is_told_from_one_whose_sentences_are_of_no_use():
     assert not has_sentences(read_recording(b"Dear reader,\n$GPGGA,1*00\n").tally)
     assert has_sentences(read_recording(PART).tally)
+    assert without_sentences(read_recording(POSITION).tally) is None
+    damaged = POSITION.replace(b"*", b"*0")
+    assert str(without_sentences(read_recording(damaged).tally)).endswith(": 1 x checksum wrong")
     assert has_sentences(read_recording(POSITION).tally)
 
 

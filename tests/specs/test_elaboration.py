@@ -22,9 +22,10 @@ from semantics.properties.propositions import Always, And, Inside, Not, Or, Vari
 from semantics.state.physical_model import Carried, Placed
 from semantics.state.setting import Control, Scheduler
 from semantics.successors import successors
+from specs import syntax as s
 from specs.codes import Code
 from specs.diagnostics import MissionError
-from specs.elaboration import load_mission
+from specs.elaboration import load_mission, read_mission
 
 MISSIONS = Path(__file__).parents[2] / "specs" / "missions"
 SIGNATURE = """
@@ -231,6 +232,30 @@ def test_what_is_no_mission_is_said_with_the_nearest_that_ships(name, message, h
         load_mission(name)
     (found,) = caught.value.diagnostics
     assert (found.code.number, found.message, found.hint[: len(hint)]) == ("LS007", message, hint)
+
+
+def test_a_file_named_without_its_end_is_found_in_the_hint(tmp_path):
+    (tmp_path / "bridge.mission").write_text("signature standard", encoding="utf-8")
+    with pytest.raises(MissionError, match=f"did you mean '{tmp_path}/bridge.mission'"):
+        load_mission(f"{tmp_path}/bridge")
+
+
+@pytest.mark.parametrize(
+    ("read", "given", "message"),
+    [
+        (
+            read_mission,
+            Path("bridge.mission"),
+            "read_mission takes a text or a Mission, and load_mission a file",
+        ),
+        (read_mission, 5, "5 is neither"),
+        (load_mission, 7, "not int"),
+        (read_mission, s.Mission("x", ()), r"'x' is no part of a tree: a name is Name\('uav0'\)"),
+    ],
+)
+def test_what_is_neither_a_text_nor_a_tree_nor_a_path_is_refused(read, given, message):
+    with pytest.raises(TypeError, match=message):
+        read(given)
 
 
 # --- behaviours -----------------------------------------------------------------------------------------------

@@ -227,6 +227,14 @@ check { ltl "l" under fairness: eventually uav in sea }
 BigActor q hosted_at uav with_behavior { control(MOVE_HOST_TO PARENT(boat)) }
     # PARENT | go where it was seen: observe(ALL) react { case obs: Observation if boat in obs =>
     control(MOVE_HOST_TO parent(boat, obs)) }
+world { raft: Drifter = point (37.1, -8.6) linked to vhf }  # to | write linked vhf
+check { invariant "i": uav at base }  # at | write in: uav in base
+check { invariant "i": actually uav linked to vhf }  # to | write linked vhf
+check { invariant "i": always uav in sea }  # always uav in sea | leave the operator in front out
+check { invariant "i": G uav in sea }  # G uav in sea | leave the operator in front out
+check { ltl "l" under strong fairness of send: eventually uav in sea }
+    # send | write snd, its delivery; or req_snd, its request
+check { progress under weak fairness of p, observe p }  # observe | write sense, its answer; or req_obs, its request
 check { invariant "i": uav.altitude < 100 }
     # uav | only bigActors have variables; write uav in place, uav linked channel
 check { invariant "i": ended uav }  # uav | name the bigActor that it hosts: p

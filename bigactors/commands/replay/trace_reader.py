@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
 from adapters.recording.recording_reader import Recording, is_recording
 from bigactors.commands.replay.foreign_recordings import TELEMETRY, ForeignRecording, watched
@@ -63,6 +63,9 @@ def watched_in(
     return mission, watched(path, mission, names)
 
 
+OF_TRACES: Final = "give a trace.json that check --trace wrote, or a recording that run --record wrote"
+
+
 def read_trace(
     path: str, mission_file: str | None, variation: Variation, names: dict[str, str] | None = None
 ) -> Replayed:
@@ -81,7 +84,10 @@ def read_trace(
         mission, shown = watched_in(path, mission_file, variation, names or {})
         account_for(path, shown, tell)
         return Replayed(mission, shown.trace, times=shown.times)
-    data = read_json(path)
+    try:
+        data = read_json(path)
+    except Mistake as mistake:
+        raise Mistake(mistake.message, mistake.hint or OF_TRACES, path) from mistake
     named = data.get("mission") if isinstance(data, dict) else None
     if mission_file is None and not isinstance(named, str):
         raise Mistake("the file names no mission: it is no trace", "give the mission with --mission", path)

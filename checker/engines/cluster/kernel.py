@@ -10,9 +10,10 @@ import numpy as np
 from checker.engines.fast.columns import WORD
 from checker.engines.fast.jit_decorators import inner, njit
 from checker.engines.fast.kernel import add_row
-from checker.engines.fast.learned_model import PLACE, SIZE, WORDS, State, SuccessorBatch
+from checker.engines.fast.learned_model import LIMIT, PLACE, SIZE, WORDS, State, SuccessorBatch
 from checker.engines.fast.prefetch import prefetch
 from checker.engines.fast.table import AHEAD, Words, bits_for, entry_of, fetch, find, hashed
+from checker.engines.fast.tree_compression import PAIR, FoldedTable, fold, take, unfold
 
 _ONE, _TWO, _HALF, _TOP = np.uint64(1), np.uint64(2), np.uint64(32), np.uint64(58)
 _PLACE, _WORD = np.uint64(PLACE), np.uint64(WORD)
@@ -77,14 +78,81 @@ def _owner(
 
 
 @njit(cache=True)
-def owners_of(words: Words, origins: State, rows: Words, width: int, own: Owning, owners: Any) -> None:
-    """Note the worker of each row; `origins` are the rows from which they were reached."""
+def owners_of(
+    words: Words, f: FoldedTable | None, origins: State, rows: Words, width: int, own: Owning, owners: Any
+) -> None:
+    """Note the worker of each row; `origins` are the rows from which they were reached, compressed with `f`."""
     wide, last, base = np.uint64(width), np.int64(-1), np.uint64(0)
     for k in range(len(owners)):
-        at = np.uint64(origins[k]) * wide
+        source, at = words, np.uint64(origins[k]) * wide
+        if f is not None:
+            unfold(f, words, origins[k])
+            source, at = f.whole, np.uint64(0)
         if origins[k] != last:
-            last, base = origins[k], key_of(words, at, own)
-        owners[k] = _owner(words, at, rows, np.uint64(k) * wide, width, base, own)
+            last, base = origins[k], key_of(source, at, own)
+        owners[k] = _owner(source, at, rows, np.uint64(k) * wide, width, base, own)
+
+
+@njit(cache=True, forceinline=True)
+def find_plain(
+    words: Words,
+    table: Any,
+    f: FoldedTable | None,
+    batch: SuccessorBatch,
+    k: int,
+    width: int,
+    bits: np.uint32,
+) -> int:
+    """Return what `find` returns for a plain successor; if rows are compressed with `f`, it is, too."""
+    if f is None:
+        return find(words, table, batch.kept, k, batch.hashes[k], width, bits)
+    unfold(f, words, batch.origins[k])
+    if fold(f, take(f, batch.kept, k * width, width, False), False, f.target, 0) < 0:
+        return np.int64(-1)
+    return find(words, table, f.target, 0, hashed(f.target, 0, PAIR), PAIR, bits)
+
+
+class Leads(NamedTuple):
+    """The rows of a round that partial-order reduction expands, and the steps that lead on: to the next layer.
+
+    Attributes:
+        begin, end: The first row of the round, and of the next layer.
+        reduced: For each row of the round, whether some step is left out.
+        led: For each, whether some step leads on; if `all`, whether all do.
+        all: Whether all must.
+        movers: For each row, the agent of the step that led there (see `Trails.movers`).
+        agents: The agent of each transition, in the same form.
+    """
+
+    begin: int
+    end: int
+    reduced: Any
+    led: Any
+    all: bool
+    movers: Any
+    agents: State
+
+
+@njit(cache=True, forceinline=True)
+def is_asked(p: Leads | None, origin: int) -> bool:
+    """Return whether a row is reduced."""
+    return False if p is None else p.reduced[origin - p.begin]
+
+
+@njit(cache=True, forceinline=True)
+def note_step(p: Leads | None, origin: int, number: int) -> None:
+    """Note the number of the target of a row's step, less than 0 for a new one."""
+    if p is not None:
+        row, leads_on = origin - p.begin, number < 0 or number >= p.end
+        if p.reduced[row] and leads_on != p.all:
+            p.led[row] = leads_on
+
+
+@njit(cache=True, forceinline=True)
+def note_mover(p: Leads | None, step: int, state: State) -> None:
+    """Note the agent of the step that leads to the next row."""
+    if p is not None:
+        p.movers[state[SIZE]] = p.agents[step]
 
 
 @njit(cache=True)
@@ -92,6 +160,7 @@ def deal(
     words: Words,
     origins: Words,
     table: Any,
+    f: FoldedTable | None,
     batch: SuccessorBatch,
     gathered: int,
     own: Owning,
@@ -100,6 +169,7 @@ def deal(
     chosen: State,
     owners: Any,
     counts: State,
+    p: Leads | None,
     state: State,
 ) -> int:
     """Distribute gathered successors: store the new ones of this worker as rows, and select those of others.
@@ -107,12 +177,14 @@ def deal(
     `chosen` and `owners` get the selected successors, without recently sent ones, and their workers. The worker of a
     successor is computed last: most successors are known rows or were sent before. `sent` is a direct-mapped cache of
     sent rows, indexed by hash, with a flag before each row. It compares whole rows, so it may forget a row but never
-    confuses two.
+    confuses two. Successors of reduced rows are always sent, since their worker answers whether they lead on.
+
+    If rows are compressed with `f`, this worker's new ones are selected, too, instead of stored.
 
     Returns:
         The number of selected successors.
     """
-    rows, hashes, reached_from = batch.words, batch.hashes, batch.origins
+    rows, hashes, reached_from = batch.kept, batch.hashes, batch.origins
     width, bits = state[WORDS], np.uint32(bits_for(len(table)))
     wide, last_place = np.uint64(width), np.uint64(len(sent) // (width + 1) - 1)
     found, last, base = np.int64(0), np.int64(-1), np.uint64(0)
@@ -121,26 +193,33 @@ def deal(
         if k + AHEAD < gathered:
             prefetch(sent, (hashes[k + AHEAD] & last_place) * (wide + _ONE))
         counts[batch.steps[k]] += 1
-        where = find(words, table, rows, k, hashes[k], width, bits)
+        where = find_plain(words, table, f, batch, k, width, bits)
         if where >= 0:
+            note_step(p, reached_from[k], where)
             continue
         to, lately = np.uint64(k) * wide, (hashes[k] & last_place) * (wide + _ONE)
         same = sent[lately] == _ONE
         for j in range(wide):
             same = same and sent[lately + _ONE + j] == rows[to + j]
-        if same:
+        if same and not is_asked(p, reached_from[k]):
             continue
-        at = np.uint64(reached_from[k]) * wide
+        source, at = words, np.uint64(reached_from[k]) * wide
+        if f is not None:
+            source, at = f.whole, np.uint64(0)
         if reached_from[k] != last:
-            last, base = reached_from[k], key_of(words, at, own)
-        owner = _owner(words, at, rows, to, width, base, own)
+            last, base = reached_from[k], key_of(source, at, own)
+        owner = _owner(source, at, rows, to, width, base, own)
         if owner != me:
             sent[lately] = _ONE
             for j in range(wide):
                 sent[lately + _ONE + j] = rows[to + j]
+        if owner != me or f is not None:
             chosen[found], owners[found] = k, owner
             found += 1
         else:
+            note_step(p, reached_from[k], -1)
+            if state[SIZE] < state[LIMIT]:
+                note_mover(p, batch.steps[k], state)
             entry = entry_of(hashes[k], state[SIZE], bits)
             origin = np.uint64(reached_from[k] * own.workers + me)
             add_row(words, origins, table, -where - 1, entry, rows, k, origin, state)

@@ -10,13 +10,6 @@ from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple
 
-from checker.engines.fast.access_recording import (
-    CellRecorder,
-    CellSource,
-    ColumnQuestion,
-    Edited,
-    QuestionScope,
-)
 from checker.engines.fast.columns import Columns, Packing, Place, Writes
 from checker.engines.fast.decision_leaves import (
     ALIKE,
@@ -33,7 +26,14 @@ from checker.engines.fast.effects import EffectWriter, RecordedEffect, Relearn, 
 from checker.engines.fast.interchangeable import Likeness
 from checker.engines.fast.rule_cache import CachedOutcome, Exchange, Kin, PartLessons
 from checker.engines.fast.rule_cache_lookup import Learned, SharedLessons
-from checker.engines.fast.value_templates import agents_of, mobile_names, settled
+from checker.recording.access_recording import (
+    CellRecorder,
+    CellSource,
+    ColumnQuestion,
+    Edited,
+    QuestionScope,
+)
+from checker.recording.value_templates import agents_of, mobile_names, settled
 from semantics.behaviours.expressions import Fault
 from semantics.behaviours.observations import Fact, Observation
 from semantics.environment import Clause

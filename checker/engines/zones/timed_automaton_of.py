@@ -24,7 +24,6 @@ from checker.engines.fast.origins import OriginPages
 from checker.engines.fast.row_store import RowFormat, RowStore
 from checker.engines.fast.rule_model import RuleModel
 from checker.engines.fast.table import most_in
-from checker.engines.fast.value_templates import settled
 from checker.engines.timed.exchanged_clocks import ClockExchange
 from checker.engines.zones import location_successors, location_views
 from checker.engines.zones.clock_images import UNNAMED
@@ -51,6 +50,7 @@ from checker.engines.zones.timed_automaton import (
     TimedAutomaton,
 )
 from checker.limits import look
+from checker.recording.value_templates import settled
 from semantics.environment import Clause
 from semantics.state.configuration import Configuration
 from semantics.state.signature import Name

@@ -15,8 +15,7 @@ from scale import examples
 from adapters.camera.votes import share
 from adapters.console.entity_tracks import CHUNK, EVERY, MOST_CHUNKS, extended
 from adapters.console.facts import Facts
-from adapters.console.mutable_facts import Draft
-from adapters.console.ticks import MOST, tick
+from adapters.console.mutable_facts import MOST_TICKS, Draft, tick
 from adapters.recording.mcap_files import McapWriter
 from adapters.recording.schemas import SCHEMAS
 from bigactors.commands.console.recorded_history import history_of
@@ -116,10 +115,10 @@ def test_a_trail_that_grows_too_long_keeps_its_ends_and_every_second_position():
 
 def test_of_too_many_ticks_the_commonest_sort_is_thinned_out():
     draft = Draft(Facts())
-    for k in range(3 * MOST):
+    for k in range(3 * MOST_TICKS):
         tick(draft, float(k), "finding" if k % 1_000 == 0 else "world")
     sorts = [sort for _, sort in draft.ticks.values()]
-    assert len(sorts) <= MOST
+    assert len(sorts) <= MOST_TICKS
     assert sorts.count("finding") == 6
 
 

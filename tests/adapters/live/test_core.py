@@ -191,7 +191,7 @@ def test_a_link_that_comes_back_is_no_second_broken_assumption_but_another_autho
     assert sorted(run.kinds()) == ["broken assumption", "link restored", "lost link"]
     assert run.labels[-1] == "⟨env : uav0 is on control:gcs0⟩"
     run.turn(13.0, seen("uav0", WEST, 13.0, channels=("control:gcs1",)))
-    assert run.findings[-1].message.startswith("uav0 is on control:gcs1; it was not handed over there")
+    assert run.findings[-1].message.startswith("uav0 is on control:gcs1; the mission neither links it there")
 
 
 @pytest.mark.parametrize(("where", "broken"), [((37.012, -8.612), 1), ((37.012, -8.652), 2)])

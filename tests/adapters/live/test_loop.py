@@ -169,8 +169,9 @@ async def test_a_run_begins_only_when_its_vehicles_are_heard():
 def test_a_run_begins_only_where_the_mission_says_that_it_does():
     with pytest.raises(NotAsAssumed, match="uav0 is in east0"):
         fly(TOUR + GO, Vehicle(at=EAST))
-    ending, _ = fly(TOUR, Vehicle(at=EAST), forced=True)
+    ending, looker = fly(TOUR, Vehicle(at=EAST), forced=True)
     assert ending.reason == "the mission has ended"
+    assert [each.fallback for each in looker.findings if each.kind == "broken assumption"] == [""]  # it flew
 
 
 def test_a_plugin_that_fails_ends_the_run_with_its_reason():

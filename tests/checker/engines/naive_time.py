@@ -10,6 +10,7 @@ import networkx as nx
 
 from semantics.environment import Drops, Leaves
 from semantics.properties.propositions import holds
+from semantics.state.physical_model import InTransit
 from semantics.state.requests import CTR, FLY, MGR, OBS, SND
 from semantics.successors import by_clause, expand
 from semantics.timing.flight_times import aim, interval_of_flight
@@ -137,14 +138,11 @@ class Naive:
         return self.frozen(c, self.windows(c, clocks))
 
     def restored(self, c, u, endurance):
-        physical = c.structure.physical
-        if u not in physical or physical.transit(u) is not None:
-            return False
-        place = physical.abstract_parent(u)
-        while place in physical:
+        physical, place = c.structure.physical, u
+        while place in physical and not isinstance(physical.placement(place), InTransit):
+            place = physical.abstract_parent(place)
             if place in endurance.places:
                 return True
-            place = physical.abstract_parent(place)
         return False
 
     def windows(self, c, clocks):

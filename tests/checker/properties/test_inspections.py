@@ -20,6 +20,7 @@ from checker.verdicts import Outcome
 from semantics.properties.propositions import holds
 from semantics.state.requests import FLY
 from semantics.successors import expand
+from specs.elaboration import load_mission
 
 WATCH = "BigActor watch hosted_at gcs2 with_behavior { loop { observe(PARENT(HOST)) react { case obs => skip } } }\n"
 """It goes on, so that nothing stands still."""
@@ -92,6 +93,13 @@ UNMATCHED = {
 def test_an_unmatched_control_is_told_with_what_is_missing(host, command, words):
     text = f"BigActor a hosted_at {host} with_behavior {{ control({command}) }}\n"
     assert words in violation(consistency(text), "unmatched").details
+
+
+def test_an_unrealisable_control_names_the_place_in_which_the_carrier_is_not():
+    found = violation(
+        check(load_mission("broken_unrealisable")).verdicts["local_consistency"], "unrealisable"
+    )
+    assert "nothing drives drifter0, and vessel0, which carries it, is not in oilSpill0" in found.details
 
 
 @pytest.mark.parametrize(("text", "found", "words"), CONSISTENCY.values(), ids=CONSISTENCY)

@@ -67,6 +67,37 @@ def test_a_run_that_never_ends_is_told_with_what_it_does_for_ever(mission, name,
     assert {each.number: each.text for each in found} == told
 
 
+PASSED_ON = """\
+signature standard
+world {
+  gate: Location = circle (37, -8.7) radius 300 m
+  north: Location = circle (37.02, -8.7) radius 300 m
+  uav0: UAV = point (37.02, -8.7) linked net
+  uav1: UAV = point (37.0201, -8.7) linked net
+}
+BigActor looker hosted_at uav1 with_behavior {
+  observe(CHILDREN(gate))
+  react {
+    case seen if not uav1 in seen => send "go" to mover
+  }
+  control(MOVE_HOST_TO gate)
+}
+BigActor mover hosted_at uav0 with_behavior {
+  react {
+    case "go" => control(MOVE_HOST_TO gate)
+  }
+}
+"""
+
+
+def test_one_who_acts_on_what_another_saw_is_told_from_one_who_looked(tmp_path):
+    file = tmp_path / "passed_on.mission"
+    file.write_text(PASSED_ON, encoding="utf-8")
+    violation = check(load_mission(file)).verdicts["race_freedom"].violations[0]
+    last = causes_of(violation.trace, violation)[-1]
+    assert last.text == "mover acts on what looker saw: uav0 moves from north to gate"
+
+
 @pytest.mark.parametrize(("mission", "name", "told"), TOLD, ids=[each[0] for each in TOLD])
 def test_a_violation_has_its_causes_in_the_order_of_the_run(mission, name, told):
     verdict = check(load_mission(mission)).verdicts[name]

@@ -130,6 +130,38 @@ def test_a_vehicle_that_never_left_is_full_and_then_lasts_so_long(flight):
     assert decided(home, endurance).verdicts["endurance"].outcome is Outcome.HOLDS
 
 
+ABOARD = """\
+signature standard { kind Vessel driven carries UAV }
+world {
+  south0: Location = circle (37.0, -8.7) radius 300 m
+  north0: Location = circle (37.02, -8.7) radius 300 m
+  ship0: Vessel = point (37.0, -8.7)
+  uav0: UAV carried by ship0
+}
+BigActor a hosted_at ship0 with_behavior {
+  control(MOVE_HOST_TO north0)
+}
+control timed
+timing {
+  tick 1 min
+  ship0 flies at 3 m/s
+  uav0 lasts 2 min, restored in PLACE
+  agents react within 1 min
+}
+check {
+  endurance
+}
+"""
+
+
+@pytest.mark.parametrize(("place", "outcome"), [("ship0", Outcome.HOLDS), ("south0", Outcome.VIOLATED)])
+def test_a_vehicle_aboard_what_restores_it_is_restored_on_its_way(place, outcome, tmp_path):
+    file = tmp_path / "aboard.mission"
+    file.write_text(ABOARD.replace("PLACE", place), encoding="utf-8")
+    mission = load_mission(file)
+    assert decided(mission.initial, *mission.properties).verdicts["endurance"].outcome is outcome
+
+
 def replaced(**changes):
     return Timing(**{name: getattr(MINUTES, name) for name in Timing.__dataclass_fields__} | changes)
 
