@@ -32,6 +32,10 @@ if TYPE_CHECKING:
     from checker.reduction.reducer import Reduced
 
 
+FEW = 64
+"""The zones in local time before the first look at what is shared; then twice as many each time."""
+
+
 class _Files:
     """The files of a timed search: its checkpoint, and its zones when memory is full.
 
@@ -175,9 +179,10 @@ def _visit_all(
     network: Network, search: Search, files: _Files, found: Exploration, options: Options, started: float
 ) -> None:
     reported, goes_on = started, True
-    most = options.limits.configurations
+    most, zones = options.limits.configurations, FEW if search.is_local else CHUNK
     while goes_on:
-        goes_on = search.advance(CHUNK if most is None else min(CHUNK, max(most - search.count, 0) + 1))
+        zones = min(2 * zones, CHUNK)  # what is shared shows early
+        goes_on = search.advance(zones if most is None else min(zones, max(most - search.count, 0) + 1))
         network.settle()
         if search.is_far:
             return
