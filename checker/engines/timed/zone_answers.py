@@ -378,18 +378,21 @@ class ZoneTimes:
 
     def _reads(self, asks: tuple[Proposition, ...]) -> NDArray[np.uint64] | None:
         """Return for each location the columns that decide some propositions; None if a column is too new."""
+        participants = self.network.participants
+        assert participants is not None
         if asks not in self._reads_of:
-            participants, survey = self.network.participants, self.survey()
-            assert participants is not None
+            survey = self.survey()
             trees = [tree for formula in asks for tree in Profiles(survey, formula).trees.values()]
             leaves = [self.network.model.classify(tree, self.order) for tree in trees]
             participants.see()
+            if participants.is_void:
+                return None
             sets = participants.reads.used.reshape(-1, participants.words)
             found = np.zeros((self.network.size, participants.words), np.uint64)
             for each in leaves:
                 found[self.order] |= sets[each]
             self._reads_of[asks] = found[self.network.of_locations.used]
-        return None if self.network.participants.is_void else self._reads_of[asks]
+        return self._reads_of[asks]
 
     def _first(self, rule: Rule, asks: tuple[Proposition, ...]) -> TimedRun | None:
         """Return the first of the earliest runs to an end of the observer."""

@@ -96,9 +96,8 @@ class Participants:
         self.fresh = np.zeros(edges * size, np.uint64)
         known = (self.reads.room, self.writes.room, self.copies.room, writing, self.touched, self.wrote)
         here = np.zeros(self.total * self.words, np.uint64)
-        return LearnedFootprints(
-            self.words, agents, clauses, self.total, *known, here, *scratch, begun, self.fresh
-        )
+        numbers = (self.words, agents, clauses, self.total)
+        return LearnedFootprints._make((*numbers, *known, here, *scratch, begun, self.fresh))
 
     @property
     def size(self) -> int:

@@ -176,7 +176,7 @@ class Search:
         clocks = (automaton.clocks, automaton.lower, automaton.upper, automaton.rows, self.left)
         takes = (ALONE, ALONE) if self.processes == 1 else (automaton.takes_from.room, automaton.takes.room)
         rooms = (*(each.room for each in (*parts, *clocks)), *takes)
-        self.model = kernel.CompiledAutomaton(*rooms, self.processes)
+        self.model = kernel.CompiledAutomaton._make((*rooms, self.processes))
         dated = (self.dated, self.dated_from)
         found = (self.bounds, self.begins, *dated, self.sums, self.places, self.following, self.heads)
         self.zones = kernel.Zones(*(each.room for each in (*found, self.ranks, self.rows, self.groups)))
