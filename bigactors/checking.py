@@ -30,7 +30,7 @@ from checker import (
     report_json,
 )
 from checker.engines.capabilities import REDUCTIONS, Feature, require
-from checker.engines.contract import TickError
+from checker.engines.contract import TickError, ZoneClock
 from checker.properties.findings import MOST_VIOLATIONS
 from physical import RegionError
 from semantics.state.canonical import digest
@@ -123,6 +123,7 @@ class How:
     keeping: Keeping | None = None
     cluster: Cluster | None = None
     threads: int | None = None
+    clock: ZoneClock = ZoneClock.LOCAL
     times: bool = False
     ways: bool = False
     regions: bool = False
@@ -149,6 +150,7 @@ def check_mission(
                 keeping=how.keeping and _of_this(how.keeping, mission, limits),
                 cluster=how.cluster,
                 threads=how.threads,
+                clock=how.clock,
                 times=how.times,
                 ways=how.ways or (how.regions and unlisted_ways(mission, how) is None),
             )

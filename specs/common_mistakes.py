@@ -247,6 +247,19 @@ def misplaced_query(at: ParsePoint) -> Diagnostic | None:
     return at.mistake(Code.UNEXPECTED, "a query is observed, it has no value of its own", hint)
 
 
+def dotted_query(at: ParsePoint) -> Diagnostic | None:
+    """`observe(HOST.parent)`."""
+    opening = word_before(at.prepared.text, at.before.span.start)
+    asks = word_before(at.prepared.text, opening.span.start).text in {"observe", *QueryOperator}
+    if at.found.text != "." or at.accepted != {")"} or not asks:
+        return None
+    relation = at.following.text.upper()
+    if relation not in set(QueryOperator):
+        relation = QueryOperator.PARENT
+    hint = f"write {relation}({at.before.text})"
+    return at.mistake(Code.UNEXPECTED, "a query names its relation first", hint)
+
+
 def missing_parenthesis(at: ParsePoint) -> Diagnostic | None:
     """`observe HOST`, `CHILDREN HOST`, `PARENT()`, `box (37.0, -8.5 (36.9, -8.6)`."""
     if at.accepted == {"("} and at.before.text in _CALLED:
@@ -716,6 +729,7 @@ MISTAKES: Final[tuple[Callable[[ParsePoint], Diagnostic | None], ...]] = (
     missing_host,
     missing_geometry,
     missing_value,
+    dotted_query,
     missing_parenthesis,
     bad_coordinate,
     operator_first,

@@ -65,6 +65,9 @@ def _summary(facts: Facts) -> Iterable[Sequence[str]]:
     mission, begin = facts.run.mission, facts.time if facts.begin is None else facts.begin
     yield "mission", f"{mission['name']}, {mission['digest']}"
     yield "verified", "yes" if mission["verified"] else "no: nothing was verified of this run"
+    rehearsed = sorted(name for name, plugin in facts.run.vehicles.items() if "simulated:" in plugin)
+    if rehearsed or facts.run.rate != 1.0:
+        yield "simulated", ", ".join(rehearsed) or "its time"
     if mission["scheduler"]:
         yield "scheduler", mission["scheduler"]
     if facts.run.station:

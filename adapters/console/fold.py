@@ -13,7 +13,6 @@ from adapters.console.entity_tracks import take_arrival
 from adapters.console.facts import Change, Facts, Opening, Run, Standing, Unreplayable
 from adapters.console.fates import take_giving_back, take_order
 from adapters.console.flights import arrive, take_command, take_flight, take_report, take_status, take_words
-from adapters.console.mutable_facts import Draft, tick
 from adapters.console.operator_actions import take_acknowledgement, take_note, take_saying
 from adapters.console.parsing import count, number, ring, text, texts
 from adapters.console.station_list import take_presence
@@ -43,7 +42,7 @@ STRUCTURE: Final = frozenset({"parent", "links", "placement", "channels", "down"
 """The cells of L and P."""
 
 
-def take_step(draft: Draft, time: float, data: Any) -> None:
+def take_step(draft: Facts, time: float, data: Any) -> None:
     """Take in a step: the configuration after it, and the changes."""
     label, number = data.get("label"), count(data.get("number"))
     if not isinstance(label, str) or number is None:
@@ -69,10 +68,10 @@ def take_step(draft: Draft, time: float, data: Any) -> None:
     }
     draft.steps.bounded(MOST_STEPS)
     if rule in SHOWN_RULES:
-        tick(draft, time, SORTS.get(rule, "control"))
+        draft.tick(time, SORTS.get(rule, "control"))
 
 
-def _followed(draft: Draft, standing: Standing, number: int, time: float, data: Any) -> Label | None:
+def _followed(draft: Facts, standing: Standing, number: int, time: float, data: Any) -> Label | None:
     """Replay a step and return its label; if the rules do not allow it, give up the replay for good."""
     before = standing.configuration
     try:
@@ -196,7 +195,7 @@ def _limit(data: Any) -> TimeLimit | None:
 STATES: Final = ("waits", "ready", "begun")
 
 
-def take_preflight(draft: Draft, _time: float, data: Any) -> None:
+def take_preflight(draft: Facts, _time: float, data: Any) -> None:
     """Take in the checklist, and whether the run waits, is ready to start, or has begun."""
     match data:
         case {"state": str(state), "items": list(items)} if state in STATES:
@@ -216,7 +215,7 @@ def _item(said: dict[Any, Any]) -> Json:
     }
 
 
-TOPICS: Final[dict[str, Callable[[Draft, float, Any], None]]] = {
+TOPICS: Final[dict[str, Callable[[Facts, float, Any], None]]] = {
     "arrivals": take_arrival,
     "steps": take_step,
     "deadlines": take_deadline,
@@ -239,7 +238,7 @@ TOPICS: Final[dict[str, Callable[[Draft, float, Any], None]]] = {
 """The handler of each topic's messages; the console shows nothing of other topics."""
 
 
-def take(draft: Draft, message: Message, opening: Opening) -> None:
+def take(draft: Facts, message: Message, opening: Opening) -> None:
     """Take in a message; raises RecordingError if the recording is not of a run."""
     draft.changed = True
     if draft.run is None:
@@ -255,7 +254,7 @@ def take(draft: Draft, message: Message, opening: Opening) -> None:
             TOPICS[message.topic](draft, draft.time, message.data)
 
 
-def time_of(facts: Facts | Draft, message: Message) -> float:
+def time_of(facts: Facts, message: Message) -> float:
     """Return the time at which a message counts: time never goes back, even after the old messages of a resumed run.
 
     The topic `end` and those for other programs may use another clock; their messages count at the current time.
@@ -266,7 +265,7 @@ def time_of(facts: Facts | Draft, message: Message) -> float:
     return facts.time if timeless else max(facts.time, message.time)
 
 
-def _begin(draft: Draft, message: Message, opening: Opening) -> None:
+def _begin(draft: Facts, message: Message, opening: Opening) -> None:
     run = checked_run(message.data if isinstance(message.data, dict) else None)
     draft.run, draft.time = run_of(run, message.time), message.time
     try:

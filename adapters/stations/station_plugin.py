@@ -16,8 +16,8 @@ from typing import Any, Final
 from msgspec import UNSET, Raw
 from msgspec.json import encode
 
-from adapters.live.batch import Heard
 from adapters.live.fresh_placements import MOST_AHEAD
+from adapters.live.run_watchers import Watcher
 from adapters.live.turn_result import Turn
 from adapters.plugin import (
     Believes,
@@ -31,7 +31,6 @@ from adapters.plugin import (
     Plugin,
     Published,
     Refused,
-    Report,
     Trouble,
     Underway,
     World,
@@ -98,7 +97,7 @@ MOST_PARCELS: Final = 10_000
 """The most waiting parcels of one station; more are requested later."""
 
 
-class Sharing:
+class Sharing(Watcher):
     """The plugin of one station; it also watches the run.
 
     Arguments:
@@ -179,12 +178,6 @@ class Sharing:
         return Shared(plugin, self)
 
     # --- as a watcher
-
-    def arrived(self, heard: Heard, now: float) -> None:
-        """Ignore a publication."""
-
-    def reported(self, report: Report, now: float) -> None:
-        """Ignore a plugin's report."""
 
     def turned(self, turn: Turn, now: float) -> None:
         """Share a turn's entries for the others; the recording has the turn already."""

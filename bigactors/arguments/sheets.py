@@ -56,7 +56,7 @@ def _add(group: argparse._ActionsContainer, argument: str, text: str) -> None:
     if text.endswith("may be repeated"):
         settings |= {"action": "append", "default": []}
     if default is not None:
-        settings["default"] = settings["type"](default)
+        settings["default"] = settings.get("type", str)(default)
         settings["help"] += "" if "(default" in text else f" (default: {default})"
     group.add_argument(*names, **settings)
 

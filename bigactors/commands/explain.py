@@ -42,7 +42,9 @@ def run(options: Namespace) -> Exit:
         elif word is not None:
             say(f"{word[0]}\n\n{word[1]}")
         else:
-            hint = did_you_mean(each, ALL)
+            hint = did_you_mean(each, ALL) or " or ".join(
+                f"bigactors explain {word}" for word in ALL if each.casefold() in word.split()
+            )
             raise Mistake(
                 f"there is no code and no word '{each:.40}'", hint or "bigactors explain lists them all"
             )

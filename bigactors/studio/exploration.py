@@ -262,7 +262,10 @@ class Exploration:
         return {"trace": to_json(trace, self.mission.source.name, digest_of(self.mission))}
 
     def _graph(self, request: Mapping[str, Any]) -> dict[str, Any]:
-        """Return the graph of all configurations if they are few, else of those around the run's end."""
+        """Return the graph of all configurations if they are few, else of those around the run's end.
+
+        With times, each step is taken as early as it may be.
+        """
         run = list(self._go(request.get("run")).trace.configurations)
         tokens = tuple(self._tokens)
         graph = reached({self.initial: ()}, self._choices_at, MOST_NODES)
@@ -273,7 +276,7 @@ class Exploration:
             graph.whole = False
         answer = graph_json(graph, run, self._is_bad)
         self._go(".".join(tokens))
-        return answer | {"run": self._address}
+        return answer | {"run": self._address, "timed": self.initial.setting.timing is not None}
 
     def _choices_at(self, address: tuple[str, ...], c: Configuration) -> tuple[Choice, ...]:
         if self.initial.setting.timing is None:

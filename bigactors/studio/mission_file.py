@@ -14,7 +14,7 @@ from bigactors.commands.new import new_mission
 from bigactors.files import check_writable, read_bytes, write_text
 from bigactors.mistakes import Mistake, unreadable
 from bigactors.studio.page_requests import MOST_TEXT
-from physical import read_places
+from physical import PhysicalError, read_places
 from physical.place_files import PLACES
 from specs.missions import shipped_missions
 
@@ -101,7 +101,6 @@ def keep_places(folder: Path, name: str, content: str) -> str:
 
     Raises:
         Mistake: Its name or its content is none of a file of places, or another file has its name.
-        PhysicalError: Its content cannot be read; it says where.
     """
     suffix = Path(name).suffix.lower()
     if suffix not in PLACES or not NAME.fullmatch(name):
@@ -110,8 +109,11 @@ def keep_places(folder: Path, name: str, content: str) -> str:
         data = b64decode(content, validate=True)
     except ValueError as error:
         raise Mistake("the file has not arrived whole", "drop it again", name) from error
-    if not read_places(suffix, data):
-        raise Mistake("the file has no places", "a plan needs items with positions", name)
+    try:
+        if not read_places(suffix, data):
+            raise Mistake("the file has no places", "a plan needs items with positions", name)
+    except PhysicalError as error:
+        raise Mistake(error.message, error.hint, f"{name}: {error.where}" if error.where else name) from error
     path = folder / name
     try:
         with path.open("xb") as file:

@@ -103,6 +103,7 @@ WORDS: Final[Mapping[str, str]] = {
         A pending control: CTR(agent, action). `actuate` carries it out, `command` sends it to a
         vehicle.""",
     "FLY": "A control under way (`control timed`): `commit` ends it where the vehicle arrives.",
+    "in transit": "A vehicle between `command` and `commit` (`control timed`): it is in no place.",
     "SND": """
         A message on its way: it is delivered when both hosts are one node or share a link, in L and
         in P.""",

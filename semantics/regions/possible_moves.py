@@ -1,6 +1,7 @@
 """Possible moves: the entities that the text of a mission may move, where to, and by which places."""
 
 from collections.abc import Iterator
+from functools import lru_cache
 from typing import NamedTuple
 
 from semantics.analysis.overapproximation import Overapproximation
@@ -32,14 +33,40 @@ def possible_moves(c: Configuration) -> tuple[PossibleMove, ...]:
     return tuple(sorted(found))
 
 
+def may_move(setting: Setting, agent: Name, entity: Name) -> bool:
+    """Whether a control of an agent's text may move an entity; true for an agent without a text."""
+    moved = _moved(setting).get(agent)
+    return moved is None or entity in moved
+
+
+@lru_cache(maxsize=8)
+def _moved(setting: Setting) -> dict[Name, frozenset[Name]]:
+    """Return for each agent with a text the entities that it may move."""
+    flow = ValueFlow(setting)
+    return {
+        agent: frozenset(
+            move.entity
+            for reaction in dict.fromkeys(_controls(setting, flow, agent))
+            for move in _moves(setting, agent, reaction)
+        )
+        for agent, role in flow.roles.items()
+        if role.starts
+    }
+
+
 def _requested(c: Configuration, flow: ValueFlow, agent: Name) -> Iterator[Reaction | None]:
     """Yield the reactions that an agent may request; None for any."""
     if agent in c.alpha:
         for pending in c.eta.of(agent):
             if isinstance(pending.request, CTR | FLY):
                 yield pending.request.reaction
+    yield from _controls(c.setting, flow, agent)
+
+
+def _controls(setting: Setting, flow: ValueFlow, agent: Name) -> Iterator[Reaction | None]:
+    """Yield the reactions of an agent's controls; None for any."""
     for number in flow[agent].statements:
-        statement = c.setting.program.statements[number]
+        statement = setting.program.statements[number]
         if isinstance(statement, ControlBy):
             found = flow.reactions(agent, statement)
             yield from (None,) if found is None else found

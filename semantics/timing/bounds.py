@@ -48,7 +48,9 @@ def timed_by(situation: TimedView, step: TimedStep) -> Timed:
     if step.transition.label.agent is None:
         return _timed_clause(situation, step)
     if request is not None:
-        return Timed(step.done, situation.bounds.get(step.done[0], ANY_TIME))
+        ways = [situation.bounds.get(clock, ANY_TIME) for clock in step.done]  # a message may have several
+        ends = [each.hi for each in ways if each.hi is not None]
+        return Timed(step.done, Interval(min(each.lo for each in ways), min(ends, default=None)))
     sort = Sort.AFTER if step.transition.label.rule == "timeout" else Sort.AGENT
     clock = ActorClock(sort, step.transition.label.agent)
     return Timed(

@@ -169,6 +169,8 @@ class Names:
             return called[index]
         if isinstance(index, str) and index in members:
             return members[index]
+        if isinstance(index, str) and self.kinds.get(index) in self.lacking:
+            return None  # its kind is the mistake
         hint = f"its members are {', '.join(called[:5])}{', ...' if len(called) > 5 else ''}"
         message = f"'{family.text}' has no member for {show(index)}"
         hint = unquoted(where, members) or (hint if called else "")

@@ -124,6 +124,7 @@ def _lacking_kinds(mission: s.Mission, kinds: Kinds, uses: Uses, names: Names) -
             otherwise = f"{listed(kinds, 'kinds')}; or {otherwise}"
         hint = names.findings.suggest(kind, (*kinds, AGENTS)) or otherwise
         names.findings.add(Code.UNKNOWN_KIND, where[0], f"unknown kind '{shorten(kind)}'{times}", hint)
+        names.lacking.add(kind)
     holding = {
         name: replace(kind, contains=kind.contains | own.keys()) if kind.contains else kind
         for name, kind in kinds.items()

@@ -141,7 +141,7 @@ def test_each_step_of_a_loop_is_reached_folded_and_unfolded_on_desk_and_phone(op
     for size in (DESK, PHONE):
         page.set_viewport_size(size)
         page.evaluate("location.hash = '#c1234'")
-        says(page, ".controls output", f"c1234 · 616.5 s of c{len(flight)}")
+        says(page, ".controls output", f"c1234 of c{len(flight)} · 616.5 s")
         fold = page.locator("tr[aria-current=step] button[aria-expanded]")
         fold.click()
         assert page.get_attribute("tr[aria-current=step]", "data-step") == "1234"

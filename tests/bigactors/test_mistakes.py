@@ -20,8 +20,7 @@ check --watch oil_spil  # oil_spil: there is no such file\n  hint: did you mean 
 check .  # .: this is a folder, not a mission
 check --watch --json - holds.mission  # --watch prints its reports
 check --trace race.mission holds.mission  # race.mission: there is a file where a folder should be
-check race.mission --engine ray --reduce por  # the ray explorer does not reduce
-check race.mission --engine reference --paranoid 1  # --paranoid works with the fast engine and with reductions only
+check race.mission --engine reference --paranoid 1  # --paranoid works with the fast and Ray engines
 check race.mission --engine reference --checkpoint there  # --checkpoint works with the fast and Ray engines only
 check race.mission --hash-compact 32  # it is gone, since a configuration takes some 24 bytes: --max-memory
 check race.mission --spill there  # --spill needs a limit on memory
@@ -90,11 +89,12 @@ world harbour.geojson --within -10,-100,10,100  # --within: from longitude
 world harbour.geojson --within -10,-170,10,170  # --within: from longitude
 world harbour.geojson --within -10,100,10,-60  # --within: from longitude
 explain LS999  # bigactors: there is no code and no word 'LS999'\n  hint: bigactors explain lists them all
+explain Fairness  #   hint: bigactors explain weak fairness or bigactors explain strong fairness
 explain deadlok  # bigactors: there is no code and no word 'deadlok'\n  hint: did you mean 'deadlock'?
 check --sign own.key oil_spill  # --sign signs a verdict
 run oil_spill --vehicle=uav0=udp:127.0.0.1:0 --unverified --trust own.key.pub  # --trust for a signed one
 check --verdict v oil_spill handover  # one mission
-run oil_spill --unverified  # vehicles of the mission have no address: uav0
+run oil_spill --unverified  # no address: uav0\n  hint: give its address: --vehicle uav0=udp:127.0.0.1:14550, or
 run oil_spill --unverified --vehicle=uav9=udp:127.0.0.1:0  # no entity 'uav9'
 run oil_spill --unverified --vehicle=gcs0=udp:127.0.0.1:0  # 'gcs0' is no vehicle
 run oil_spill --unverified --vehicle=uav0=carrier-pigeon  # no way to connect

@@ -65,6 +65,24 @@ def test_a_simulated_sensor_misses_what_the_mission_lets_it_miss_and_a_rash_scou
     assert main(["replay", "run.mcap"]) == 0
 
 
+ALONE = """\
+signature standard
+world {
+  west0: Location = box (37.02, -8.64) (37.00, -8.66)
+  uav0: UAV = point (37.01, -8.65)
+}
+BigActor a hosted_at uav0 with_behavior { control(MOVE_HOST_TO west0) }
+"""
+
+
+@pytest.mark.usefixtures("there")
+def test_a_vehicle_of_a_mission_without_stations_obeys_this_run():
+    rehearsed(ALONE, "--vehicle=uav0=simulated:copter", "--speed=200", "--for=5")
+    told = [each.data.get("authority") for each in read_recording(Path("run.mcap")).of("status")]
+    assert ["this run"] in told
+    assert all(each in ([], None, ["this run"]) for each in told)
+
+
 def test_only_simulated_vehicles_fly_faster_than_life(refused):
     told = refused("run", "endurance", "--unverified", "--vehicle=uav0=udp:127.0.0.1:0", "--speed=8")
     assert "uav0 may be a real vehicle" in told

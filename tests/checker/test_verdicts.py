@@ -4,7 +4,7 @@ import pytest
 
 from bigraphs.exploration import explore as explore_system
 from bigraphs.notation import read_system
-from checker import Verdicts, check, explore
+from checker import Limits, Verdicts, check, explore
 from specs.elaboration import load_mission
 
 
@@ -85,6 +85,11 @@ def test_a_line_says_what_it_is_and_how_large(report):
     assert repr(mission.initial) == (
         "⟨a@uav0 at observe (line 18), b@uav1 at observe (line 26) | uav0 in north0, uav1 in south0 | ∅⟩"
     )
+
+
+def test_an_incomplete_exploration_names_its_bound():
+    found = explore(load_mission("oil_spill").initial, limits=Limits(configurations=5))
+    assert repr(found).endswith(" complete=False: the limit of 5 configurations>")
 
 
 def test_a_system_of_bigraphs_is_a_line_too():

@@ -235,6 +235,10 @@ check { invariant "i": G uav in sea }  # G uav in sea | leave the operator in fr
 check { ltl "l" under strong fairness of send: eventually uav in sea }
     # send | write snd, its delivery; or req_snd, its request
 check { progress under weak fairness of p, observe p }  # observe | write sense, its answer; or req_obs, its request
+world { jet: UAW = point (37.1, -8.6) } BigActor f[u] for u in UAV hosted_at u with_behavior { send "a" to f[jet] }
+    # UAW | did you mean 'UAV'?
+BigActor q hosted_at uav with_behavior { observe(boat.children) }  # . | write CHILDREN(boat)
+BigActor q hosted_at uav with_behavior { observe(CHILDREN(HOST.place)) }  # . | write PARENT(HOST)
 check { invariant "i": uav.altitude < 100 }
     # uav | only bigActors have variables; write uav in place, uav linked channel
 check { invariant "i": ended uav }  # uav | name the bigActor that it hosts: p

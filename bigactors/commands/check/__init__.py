@@ -58,6 +58,8 @@ exploring
       by the mission's size)
   --threads N  let the fast engine use at most N threads, with the same results for every N (default: one a core;
       with --reduce por one)
+  --clock {{local,global}} = local  explore a mission with timing by zones of local time, one clock for each process,
+      where that is sound (not under fcfs, with spawn or with --reduce symmetry), or by one clock for all
   --reduce NAMES  visit fewer configurations, where that is sound: por (partial-order reduction), symmetry, or
       por,symmetry (default: none; docs/explanation/reduction.md)
 

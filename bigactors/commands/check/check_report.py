@@ -21,6 +21,7 @@ from bigactors.terminal import paint, say, tell
 from checker import Cluster, CombinationError, Engine, Interruption, Keeping, Limits, Reduction, report_text
 from checker.check import reductions_of
 from checker.engines.capabilities import engines, features
+from checker.engines.contract import ZoneClock
 from checker.engines.fast.numba_loading import ALONE
 from checker.limits import MOST_PENDING, Stop
 from checker.reports.report import MARKS, SCREEN, coverage_text
@@ -64,6 +65,7 @@ def _how_of(options: Namespace) -> How:
         _keeping_of(options),
         _cluster_of(options),
         options.threads,
+        ZoneClock(options.clock),
         options.times,
         options.ways,
         any(name == "geojson" for name, _ in options.output),

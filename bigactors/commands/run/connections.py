@@ -251,7 +251,10 @@ def _check_all_driven(options: Namespace, mission: ElaboratedMission) -> None:
     """
     missing = sorted(driven(mission) - {name for name, _, _ in options.vehicle})
     if missing and own_station(options) is None:
-        hint = f"give its address: --vehicle {missing[0]}=udp:127.0.0.1:14550"
+        hint = (
+            f"give its address: --vehicle {missing[0]}=udp:127.0.0.1:14550, or for a rehearsal "
+            f"{missing[0]}=simulated:plane; traffic that nobody here commands is of a kind that is not driven"
+        )
         raise Mistake(f"vehicles of the mission have no address: {', '.join(missing)}", hint)
 
 
@@ -271,5 +274,7 @@ def _stations(options: Namespace, mission: ElaboratedMission) -> Stations:
             f"no channel 'control:{unknown[0]:.40}' is in the mission",
             did_you_mean(unknown[0], ids) or "see its channels",
         )
+    if not ids:
+        return Stations({"this run": 255}, ("this run",), in_mission=False)
     own = own_station(options)
-    return Stations(ids, (own,) if own in ids else tuple(ids)) if ids else Stations(in_mission=False)
+    return Stations(ids, (own,) if own in ids else tuple(ids))

@@ -95,8 +95,8 @@ export function Story({ look, go }) {
     ${text} <span class="at">at c${step}</span></a>`)}</p>`;
 }
 
-/** The number and the date of a configuration. */
-const numberOf = (look, at) => `c${at}${look.steps[at - 1]?.date ? ` · ${look.steps[at - 1].date}` : ""}`;
+/** The number of a configuration, of how many, and its date. */
+const numberOf = (look, at, of = "") => `c${at}${of}${look.steps[at - 1]?.date ? ` · ${look.steps[at - 1].date}` : ""}`;
 
 function Controls({ look, go, move, playing, play }) {
   const button = (sign, says, does) => html`<button type="button" title=${says} aria-label=${says} onClick=${does}>${sign}</button>`;
@@ -105,7 +105,7 @@ function Controls({ look, go, move, playing, play }) {
     ${button("⇤", "first configuration (Home)", () => go(0))}${button("←", "one step back (left arrow)", () => move(-1))}
     ${button("→", "one step on (right arrow)", () => move(1))}${button("⇥", "last configuration (End)", () => go(look.length))}
     <input type="range" min="0" max=${look.length} step="1" value=${look.at} aria-label="configuration" aria-valuetext=${`${numberOf(look, look.at)}: ${wordsOf(look)}`} onInput=${(event) => go(Number(event.currentTarget.value))} />
-    <output>${numberOf(look, look.at)} of c${look.length}</output>
+    <output>${numberOf(look, look.at, ` of c${look.length}`)}</output>
   </div>
   <p class=${`caption ${look.steps[look.at - 1]?.cause ? "guilty" : ""}`} aria-live="polite">${wordsOf(look)}</p>`;
 }

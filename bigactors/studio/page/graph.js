@@ -26,7 +26,7 @@ export function Graph({ ask, run, at, onGo }) {
   return html`<section class="graph" aria-label="Graph">
     <button type="button" aria-expanded=${String(open)} onClick=${() => setOpen(!open)}>Graph</button>
     ${open && problem && html`<p class="problem" role="alert">${problem}</p>`}
-    ${open && graph && html`<output>${graph.whole ? `${graph.count} configurations` : `the ${graph.count} configurations around the run`}${graph.nodes.length < graph.count ? `, ${graph.nodes.length} drawn: chains are folded` : ""}</output>
+    ${open && graph && html`<output>${graph.whole ? `${graph.count} configurations` : `the ${graph.count} configurations around the run`}${graph.nodes.length < graph.count ? `, ${graph.nodes.length} drawn: chains are folded` : ""}${graph.timed ? ", each step as early as it may be" : ""}</output>
       <${Picture} graph=${graph} at=${at} onGo=${onGo} />`}
   </section>`;
 }

@@ -198,7 +198,7 @@ class Studio {
   #judged({ number, report, refused }) {
     if (number !== this.number) return;
     this.verdicts.set(report ? { state: "done", report } : { state: "refused", refused, report: this.verdicts.value.report });
-    if (report) this.editor.mark(marksOf(report));
+    this.editor.mark(report ? marksOf(report) : []);
   }
 
   /** Fly the mission's file with simulated vehicles; the console opens in a page of its own. */

@@ -8,9 +8,10 @@ them once more, until all know all values of their rows.
 from collections import Counter
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from checker.engines.archive import Kinds, read_archive, write_archive
 from checker.engines.cluster import kernel
@@ -41,6 +42,7 @@ KINDS: Final[Kinds] = {
     "digests": np.uint8,
     "learned": np.int64,
     "movers": np.uint32,
+    "leads": np.int64,
     "state": np.int64,
 }
 
@@ -121,10 +123,17 @@ def save(shard: Shard, folder: Path, number: int, digest: str) -> None:
         np.diff(shard.keys.begins).astype(np.int64),
         shard.keys.digests(),
         np.array(sorted(shard.learned), np.int64),
-        np.zeros(0) if shard.choosing is None else shard.choosing.paths.movers.room[: store.size],
+        *_paths(shard),
         store.state[list(KEPT)],
     )
     write_archive(path_of(folder, number, shard.me), head, KINDS, arrays)
+
+
+def _paths(shard: Shard) -> tuple[NDArray[Any], ...]:
+    """Return the movers and the leads of the rows; empty without partial-order reduction."""
+    if shard.choosing is None:
+        return np.zeros(0), np.zeros(0)
+    return shard.choosing.paths.movers.room[: shard.size], shard.paths.leads.room[: shard.size]
 
 
 def happened(shard: Shard) -> set[str]:
@@ -187,8 +196,9 @@ class Loading:
         fits = fits and int(self.begins[-1]) == len(self.digests)
         fits = fits and all(0 <= row < count for row in self.learned)
         if self.shard.choosing is not None:
-            most, movers = len(self.shard.choosing.everyone), self.arrays["movers"]
-            fits = fits and len(movers) == count and not np.any(movers > most)
+            movers, leads = self.arrays["movers"], self.arrays["leads"]
+            fits = fits and len(movers) == len(leads) == count and bool(np.all(leads >= 0))
+            fits = fits and not np.any(movers > len(self.shard.choosing.everyone))
         if not fits or not self._has_come_so_far(count):
             return False
         known = (where.words, where.columns, self.begins, self.used)
@@ -284,3 +294,5 @@ class Loading:
         if shard.choosing is not None:
             shard.choosing.paths.reserve(store.rows.room)
             shard.choosing.paths.movers.room[:size] = self.arrays["movers"]
+            shard.paths.leads.grow(store.rows.room)
+            shard.paths.leads.room[:size] = self.arrays["leads"]

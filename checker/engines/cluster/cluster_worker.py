@@ -80,8 +80,8 @@ class Worker:
             before = [each.size for each in marks]
             shard.take(*self.links.exchange(shard.expand(layer, stage.rows)))
             if shard.choosing is not None:
-                answers = self.links.exchange(shard.answers)
-                shard.take(*self.links.exchange(shard.expand_rest(answers)))
+                shard.lead_on(self.links)
+                shard.take(*self.links.exchange(shard.parcels()))
             marks = self._marks(is_late=time.monotonic() >= end)
             sizes = [each.size for each in marks]
             if stage.configurations is not None and sum(sizes) > stage.configurations:

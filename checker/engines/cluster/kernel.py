@@ -10,7 +10,7 @@ import numpy as np
 from checker.engines.fast.columns import WORD
 from checker.engines.fast.jit_decorators import inner, njit
 from checker.engines.fast.kernel import add_row
-from checker.engines.fast.learned_model import LIMIT, PLACE, SIZE, WORDS, State, SuccessorBatch
+from checker.engines.fast.learned_model import PLACE, SIZE, WORDS, State, SuccessorBatch
 from checker.engines.fast.prefetch import prefetch
 from checker.engines.fast.table import AHEAD, Words, bits_for, entry_of, fetch, find, hashed
 from checker.engines.fast.tree_compression import PAIR, FoldedTable, fold, take, unfold
@@ -112,49 +112,6 @@ def find_plain(
     return find(words, table, f.target, 0, hashed(f.target, 0, PAIR), PAIR, bits)
 
 
-class Leads(NamedTuple):
-    """The rows of a round that partial-order reduction expands, and the steps that lead on: to the next layer.
-
-    Attributes:
-        begin, end: The first row of the round, and of the next layer.
-        reduced: For each row of the round, whether some step is left out.
-        led: For each, whether some step leads on; if `all`, whether all do.
-        all: Whether all must.
-        movers: For each row, the agent of the step that led there (see `Trails.movers`).
-        agents: The agent of each transition, in the same form.
-    """
-
-    begin: int
-    end: int
-    reduced: Any
-    led: Any
-    all: bool
-    movers: Any
-    agents: State
-
-
-@njit(cache=True, forceinline=True)
-def is_asked(p: Leads | None, origin: int) -> bool:
-    """Return whether a row is reduced."""
-    return False if p is None else p.reduced[origin - p.begin]
-
-
-@njit(cache=True, forceinline=True)
-def note_step(p: Leads | None, origin: int, number: int) -> None:
-    """Note the number of the target of a row's step, less than 0 for a new one."""
-    if p is not None:
-        row, leads_on = origin - p.begin, number < 0 or number >= p.end
-        if p.reduced[row] and leads_on != p.all:
-            p.led[row] = leads_on
-
-
-@njit(cache=True, forceinline=True)
-def note_mover(p: Leads | None, step: int, state: State) -> None:
-    """Note the agent of the step that leads to the next row."""
-    if p is not None:
-        p.movers[state[SIZE]] = p.agents[step]
-
-
 @njit(cache=True)
 def deal(
     words: Words,
@@ -169,7 +126,6 @@ def deal(
     chosen: State,
     owners: Any,
     counts: State,
-    p: Leads | None,
     state: State,
 ) -> int:
     """Distribute gathered successors: store the new ones of this worker as rows, and select those of others.
@@ -177,7 +133,7 @@ def deal(
     `chosen` and `owners` get the selected successors, without recently sent ones, and their workers. The worker of a
     successor is computed last: most successors are known rows or were sent before. `sent` is a direct-mapped cache of
     sent rows, indexed by hash, with a flag before each row. It compares whole rows, so it may forget a row but never
-    confuses two. Successors of reduced rows are always sent, since their worker answers whether they lead on.
+    confuses two.
 
     If rows are compressed with `f`, this worker's new ones are selected, too, instead of stored.
 
@@ -195,13 +151,12 @@ def deal(
         counts[batch.steps[k]] += 1
         where = find_plain(words, table, f, batch, k, width, bits)
         if where >= 0:
-            note_step(p, reached_from[k], where)
             continue
         to, lately = np.uint64(k) * wide, (hashes[k] & last_place) * (wide + _ONE)
         same = sent[lately] == _ONE
         for j in range(wide):
             same = same and sent[lately + _ONE + j] == rows[to + j]
-        if same and not is_asked(p, reached_from[k]):
+        if same:
             continue
         source, at = words, np.uint64(reached_from[k]) * wide
         if f is not None:
@@ -217,9 +172,6 @@ def deal(
             chosen[found], owners[found] = k, owner
             found += 1
         else:
-            note_step(p, reached_from[k], -1)
-            if state[SIZE] < state[LIMIT]:
-                note_mover(p, batch.steps[k], state)
             entry = entry_of(hashes[k], state[SIZE], bits)
             origin = np.uint64(reached_from[k] * own.workers + me)
             add_row(words, origins, table, -where - 1, entry, rows, k, origin, state)

@@ -8,19 +8,22 @@ from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from bigraphs.resources import memory_taken
 from checker.engines.cluster import kernel
+from checker.engines.cluster.divided_paths import DividedPaths, ReducedRound, place_of
 from checker.engines.cluster.row_keys import Keys
 from checker.engines.cluster.transfer import ColumnUpdate, Dictionary, RowParcel, SentValues
+from checker.engines.cluster.worker_links import Links
 from checker.engines.fast import repacking
 from checker.engines.fast.columns import WORD, Packing, shifts
 from checker.engines.fast.effects import Deeper, Varies
 from checker.engines.fast.expander import Expander
+from checker.engines.fast.kernel import count as count_steps
 from checker.engines.fast.learned_model import AT, EXPANDED, SIZE, SuccessorBatch
 from checker.engines.fast.learner import Learner
 from checker.engines.fast.origins import Elsewhere
@@ -30,9 +33,6 @@ from checker.engines.fast.row_survey import RowSurvey
 from checker.engines.fast.rule_model import RuleModel
 from checker.reduction.reducer import Reduced
 from semantics.state.configuration import Configuration
-
-if TYPE_CHECKING:
-    from checker.engines.fast.partial_order import Choosing
 
 HALF, LOW = 32, (1 << 32) - 1
 """In a parcel, the low half of an origin is the sender's row; with partial-order reduction, the high half the mover."""
@@ -146,11 +146,10 @@ class Shard:
         expander: Makes the successors of its rows.
         keys: The keys of values, from which a row's worker is computed.
         choosing: What chooses ample sets; None without partial-order reduction.
-        round: With it, the rows that are being reduced.
-        followed: The origins and transitions that the round has followed.
+        paths: With it, the paths of its cycle proviso.
+        round: With it, the rows of this round.
         tried: A batch for the steps of one row.
-        waiting: The origins of the rows last sent to each worker.
-        answers: For the rows last received from each, whether they are in the next layer.
+        answers: The places of the rows last received from each worker.
         outbox: The successors that wait for sending.
         begins: The first row of each layer, up to the one in expansion.
         end: The end of that layer.
@@ -178,12 +177,11 @@ class Shard:
         self.store = RowStore(form=RowFormat(Elsewhere, compressible=self.choosing is None, travels=True))
         self.model = RuleModel(learner, self.store, exchanging(learner, reduce, ahead=False))
         self.expander = Expander(self.model, self.choosing)
-        self.round: kernel.Leads | None = None
+        self.paths = DividedPaths(me, workers)
+        self.round: ReducedRound | None = None
         self.keys = Keys(learner.columns)
         self.outbox = Outbox(self.store.packing)
-        self.followed: list[tuple[NDArray[Any], NDArray[Any]]] = []
-        self.waiting: list[NDArray[Any]] = []
-        self.answers: list[NDArray[np.bool_]] = []
+        self.answers: list[NDArray[np.int64]] = []
         self.located_in: Packing | None = None
         self.model.followers.append(self._see)
         self.model.see()
@@ -233,7 +231,7 @@ class Shard:
         self.dictionaries = [Dictionary() for _ in range(self.workers)]
         self.outbox = Outbox(self.store.packing)
         if self.choosing is not None:
-            self.choosing.paths.movers.room[0] = 0  # nobody's step led to the first row
+            self.choosing.paths.movers.room[0] = self.paths.leads.room[0] = 0
         self._forget_sent()
 
     def _see(self) -> None:
@@ -268,7 +266,8 @@ class Shard:
         if self.choosing is None:
             self._expand([rows], self.expander.gather)
         else:
-            self._begin_round(self.choosing, rows)
+            self.choosing.paths.end = self.end
+            self.round = ReducedRound(rows, np.zeros(len(rows), np.bool_))
             self._expand([rows], self._gather_reduced)
         self.store.state[EXPANDED] = rows.stop
         return self.parcels()
@@ -297,12 +296,10 @@ class Shard:
     def _deal(self) -> None:
         """Store the batch's rows of this worker, and put the others into the outbox."""
         store, expander = self.store, self.expander
+        if self.round is not None:
+            self._deal_reduced(self.round)
+            return
         batch, count = expander.batch, expander.gathered()
-        if self.round is not None and self.choosing is not None:
-            self.choosing.paths.reserve(store.rows.room)
-            movers = self.choosing.paths.movers.room
-            self.round = self.round._replace(movers=movers, agents=self.choosing.movers)
-            self.followed.append((batch.origins[:count].copy(), batch.steps[:count].copy()))
         chosen, owners = np.zeros(count, np.int64), np.zeros(count, np.int32)
         found = kernel.deal(
             *store.arrays,
@@ -315,7 +312,6 @@ class Shard:
             chosen,
             owners,
             expander.counts.used,
-            self.round,
             store.state,
         )
         chosen, owners = chosen[:found], owners[:found]
@@ -324,12 +320,15 @@ class Shard:
             chosen, owners = chosen[owners != self.me], owners[owners != self.me]
         self.send(batch, chosen, owners)
 
-    def _store(self, batch: SuccessorBatch, which: NDArray[np.int64]) -> None:
-        """Store some successors of a batch, which are this worker's."""
+    def _store(
+        self, batch: SuccessorBatch, which: NDArray[np.int64], movers: NDArray[Any] | None = None
+    ) -> NDArray[np.int64]:
+        """Store some successors of a batch, which are its own; return their places if movers are given."""
         rows = batch.kept.reshape(-1, self.store.packing.words)[which].ravel()
         origins = batch.origins[which] * self.workers + self.me
-        mine = batch._replace(kept=rows, hashes=batch.hashes[which], origins=origins)
+        mine, size = batch._replace(kept=rows, hashes=batch.hashes[which], origins=origins), self.size
         self.store.add(mine, (0, len(which)), self.model.making)
+        return which if movers is None else self._note_movers(mine, len(which), movers, size)
 
     def send(self, batch: SuccessorBatch, which: NDArray[np.int64], owners: NDArray[np.int32]) -> None:
         """Put some successors of a batch into the outbox; each has another worker."""
@@ -341,55 +340,63 @@ class Shard:
 
     # --- partial-order reduction ----------------------------------------------------------------------------------
 
-    def _begin_round(self, choosing: "Choosing", rows: range) -> None:
-        """Begin to reduce rows of the layer."""
-        choosing.paths.end = self.end
-        reduced, forward = np.zeros(len(rows), np.bool_), choosing.ample.forward
-        led, none = np.full(len(rows), forward), np.zeros(0, np.int64)
-        movers = choosing.paths.movers.room
-        self.round = kernel.Leads(rows.start, self.end, reduced, led, forward, movers, none)
-        self.followed = [(none, none)]
-
     def _gather_reduced(self, until: int) -> bool:
         """Gather successors by ample sets; return False at something not learned yet."""
         from checker.engines.fast.ample_kernel import gather_reduced  # noqa: PLC0415  # compiled only for a reduction
 
-        store, expander, model, p = self.store, self.expander, self.model, self.round
-        assert self.choosing is not None
-        assert p is not None
-        self.choosing.paths.reserve(store.rows.room)
-        known = (model.loops, self.choosing.members, *model.symmetry, self.choosing.paths.trails)
+        store, expander, model, choosing = self.store, self.expander, self.model, self.choosing
+        assert choosing is not None
+        assert self.round is not None
+        choosing.paths.reserve(store.rows.room)
+        known = (model.loops, choosing.members, *model.symmetry, choosing.paths.trails)
         stored = (store.rows.words, store.rows.folded, store.table.room, self.tried, expander.batch)
-        counted = (p.reduced, p.begin, until, expander.met.room, store.state)
+        counted = (self.round.reduced, self.round.rows.start, until, expander.met.room, store.state)
         return bool(gather_reduced(*known, *stored, *counted))
 
-    def expand_rest(self, answers: Sequence[NDArray[np.bool_]]) -> tuple[RowParcel, ...]:
-        """Expand in full the rows of the round of which no followed step leads on; return a parcel for each worker.
+    def _deal_reduced(self, found: ReducedRound) -> None:
+        """Store the batch's rows of this worker, and put all others into the outbox: their workers answer for them."""
+        batch, count = self.expander.batch, self.expander.gathered()
+        count_steps(batch.steps, 0, count, self.expander.counts.room)
+        owners, places = self.owners_of(batch.kept, batch.origins[:count]), np.zeros(count, np.int64)
+        mine, others = np.flatnonzero(owners == self.me), np.flatnonzero(owners != self.me)
+        assert self.choosing is not None
+        places[mine] = self._store(batch, mine, self.choosing.movers[batch.steps[mine]])
+        followed = (
+            batch.origins[:count].copy(),
+            batch.steps[:count].astype(np.int64),
+            owners.astype(np.int64),
+            places,
+        )
+        found.followed.append(followed)
+        self.send(batch, others, owners[others])
 
-        `answers` are those of each worker about the rows that it was sent.
-        """
-        p, counts = self.round, self.expander.counts.used
-        assert p is not None
-        for origins, leads_on in zip(self.waiting, answers, strict=True):
-            rows = (origins.astype(np.int64) & LOW) - p.begin
-            p.led[rows[leads_on != p.all]] = not p.all
-        left = p.reduced & ~p.led
-        for origins, steps in self.followed:
-            np.subtract.at(counts, steps[left[origins - p.begin]], 1)
-        p.reduced[left] = False
-        numbers = (p.begin + np.flatnonzero(left)).tolist()
-        self._expand((range(row, row + 1) for row in numbers), self.expander.gather)
-        return self.parcels()
-
-    def _take_reduced(self, choosing: "Choosing", count: int, size: int) -> NDArray[np.bool_]:
-        """Note the movers of rows from row `size` on, just stored from the batch; return which of the batch lead on."""
-        batch = self.expander.batch
+    def _note_movers(
+        self, batch: SuccessorBatch, count: int, movers: NDArray[Any], size: int
+    ) -> NDArray[np.int64]:
+        """Note the movers of the rows from row `size` on, just stored from a batch; return the places of all in it."""
         numbers = self.store.look_up(batch, count, self.model.making)
-        choosing.paths.reserve(self.store.rows.room)
-        new = np.flatnonzero(numbers >= size)[::-1]  # of equal ones the first was stored
-        choosing.paths.movers.room[numbers[new]] = batch.steps[new]
-        leads_on: NDArray[np.bool_] = (numbers < 0) | (numbers >= self.end)
-        return leads_on
+        if self.choosing is not None:
+            self.choosing.paths.reserve(self.store.rows.room)
+            self.paths.leads.grow(self.store.rows.room)
+            new = np.flatnonzero(numbers >= size)[::-1]  # of equal ones the first was stored
+            self.choosing.paths.movers.room[numbers[new]] = movers[new]
+            self.paths.leads.room[numbers[new]] = 0
+        return place_of(numbers, self.end)
+
+    def lead_on(self, links: Links) -> None:
+        """Expand in full the rows of the round of which no followed step leads on; all workers call it at once."""
+        found, counts = self.round, self.expander.counts.used
+        assert found is not None
+        assert self.choosing is not None
+        answers = links.exchange(self.answers)
+        if self.choosing.ample.forward:
+            origins, steps, _, places = found.whole(answers)
+            left = np.unique(origins[found.reduced[origins - found.rows.start] & (places & 1 == 0)])
+        else:
+            origins, steps, *_ = found.whole(answers)
+            left = self.paths.lead_on(links, found, answers)
+        np.subtract.at(counts, steps[np.isin(origins, left)], 1)
+        self._expand((range(row, row + 1) for row in left.tolist()), self.expander.gather)
 
     # --- rows in transit --------------------------------------------------------------------------------------------
 
@@ -407,10 +414,9 @@ class Shard:
 
     def parcels(self, *, always: bool = False) -> tuple[RowParcel, ...]:
         """Return the waiting rows, a parcel for each worker; new values go with the rows, or to all if `always`."""
-        found, self.waiting = [], []
+        found = []
         for peer in range(self.workers):
             rows, origins = self.outbox.taken_out(peer)
-            self.waiting.append(origins)
             tells = peer != self.me and (always or len(origins))
             news = self.told[peer].news(self.model.learner.columns) if tells else ()
             found.append(RowParcel(news, self.store.packing, rows, origins))
@@ -423,12 +429,13 @@ class Shard:
         self.hear(parcels)
         self.answers = []
         for peer, parcel in enumerate(parcels):
-            told = [np.zeros(0, np.bool_)]
+            told = [np.zeros(0, np.int64)]
             for count in self.translated(peer, parcel):
                 size = self.size
                 self.store.add(self.expander.batch, (0, count), self.model.making)
                 if self.choosing is not None:
-                    told.append(self._take_reduced(self.choosing, count, size))
+                    batch = self.expander.batch
+                    told.append(self._note_movers(batch, count, batch.steps, size))
             self.answers.append(np.concatenate(told))
 
     def hear(self, parcels: Sequence[RowParcel]) -> None:

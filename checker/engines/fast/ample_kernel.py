@@ -177,7 +177,7 @@ def join(
     """Add a set if it is ample and has an ignored actor (cycle proviso).
 
     If all steps must lead forward, the set is added only if they do, and no other joins it. In a divided search (with
-    `trails.end`), a step leads on if its successor is in no layer up to this one.
+    `trails.end`) this is only assumed, and the workers see to it together afterwards.
 
     Returns:
         A transition of the set whose successor's path does not return to this row. If there is none: NOBODY_LEFT if no
@@ -203,10 +203,8 @@ def join(
                 if 0 <= number < most:
                     return GOING_ON
                 continue
-            if number < 0 or (trails.end and number >= most):
+            if number < 0 or trails.end:
                 return k
-            if trails.end:
-                continue
             r.more[:] = np.uint64(0)
             if end_of(trails, number, r.more) != row:
                 return k

@@ -1,6 +1,7 @@
 """The report of a flight and its tracks from the command line, of a recorded run."""
 
 import csv
+from dataclasses import replace
 from html.parser import HTMLParser
 
 from recorded import uav
@@ -63,3 +64,15 @@ def test_what_others_say_is_text_in_a_report(tape, flight):
     page = Cells(flight_report(tape.history().facts))
     assert any(row[1:] == [FOUL, "note", FOUL, "confirmed"] for row in page.rows)
     assert "script" not in page.tags
+
+
+def test_a_rehearsal_is_no_flight_in_its_report(tape, flight):
+    flight.turn(1, uav((37.011, -8.65), 1))
+    facts = tape.history().facts
+    for run, told in (
+        (facts.run, []),
+        (replace(facts.run, vehicles={"uav0": "autopilot simulated:plane"}), [["simulated", "uav0"]]),
+        (replace(facts.run, rate=8.0), [["simulated", "its time"]]),
+    ):
+        rows = Cells(flight_report(replace(facts, run=run))).rows
+        assert [row for row in rows if row[:1] == ["simulated"]] == told

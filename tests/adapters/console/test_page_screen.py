@@ -299,7 +299,12 @@ def test_a_phone_shows_each_tab_without_moving_sideways(operates):
         ana.page.get_by_role("tab", name=tab, exact=True).click()
         ana.sees("[role=tab][aria-selected=true]", tab)
         assert overflow(ana.page) == 0
-        assert ana.page.locator(".cards .scroll, .panel, .fleet .name").evaluate_all(WIDER) == []
+        assert (
+            ana.page.locator(
+                ".cards .scroll, .panel, .fleet .name, .fleet .row > :has(.battery)"
+            ).evaluate_all(WIDER)
+            == []
+        )
         assert (tab == "Vehicles") == (ana.count(".fleet .name") == 4)
         timeline = ana.box(".timeline")
         assert timeline["y"] + timeline["height"] <= PHONE["height"]

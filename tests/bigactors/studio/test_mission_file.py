@@ -7,7 +7,6 @@ import pytest
 
 from bigactors.mistakes import Mistake
 from bigactors.studio.mission_file import Overwritten, begin_mission, keep_places, read_mission, save_mission
-from physical import PhysicalError
 
 POINT = {"type": "Point", "coordinates": [-8.6, 37.0]}
 BUOY = {"type": "Feature", "properties": {"name": "b", "kind": "Buoy"}, "geometry": POINT}
@@ -61,8 +60,8 @@ def test_a_dropped_file_is_kept_if_it_has_places_and_replaces_no_other(tmp_path)
     assert (tmp_path / "b.geojson").read_bytes() == GEOJSON
     with pytest.raises(Mistake, match="another file beside the mission has this name"):
         keep_places(tmp_path, "b.geojson", b64encode(GEOJSON + b" ").decode())
-    with pytest.raises(PhysicalError):
-        keep_places(tmp_path, "c.geojson", b64encode(b"{}").decode())
+    with pytest.raises(Mistake, match=r"c\.geojson: the text is not JSON"):
+        keep_places(tmp_path, "c.geojson", b64encode(b"{").decode())
     with pytest.raises(Mistake, match="the file has not arrived whole"):
         keep_places(tmp_path, "d.geojson", "?")
     assert not (tmp_path / "c.geojson").exists()

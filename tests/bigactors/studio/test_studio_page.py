@@ -177,6 +177,11 @@ def test_a_mistake_is_shown_where_it_stands_with_its_quick_fix(opened):
     page.click(".cm-tooltip-hover .cm-diagnosticAction")
     shows(page, ".verdicts .verdict-holds")
     assert text_of(page) == MISSION
+    shows(page, ".cm-margin .sign-holds")
+    put_cursor(page, "  reachable")
+    page.keyboard.type("x")
+    says(page, ".verdicts > [role=status]", "Not checked: the text has mistakes.")
+    assert page.locator(".cm-margin .sign-holds").count() == 0
 
 
 def test_a_name_is_explained_completed_and_renamed_by_the_language_server(opened):
@@ -229,6 +234,8 @@ def test_a_name_is_chosen_in_the_text_on_the_map_and_in_the_bigraph_together(ope
     x, y = page.evaluate("studio.map.pixelOf([37.003, -8.643])")
     page.locator("#map").click(position={"x": x, "y": y})
     says(page, ".chosen-name", "west0 ×")
+    chart = page.evaluate("studio.map.summary()")
+    assert "uav0, UAV, 37°00.600′N 008°39.000′W." in chart  # nothing is heard of a design
     assert page.evaluate("studio.editor.view.root.querySelector('.cm-chosen-name').textContent") == "west0"
     picture(page, "chosen")
     for width, height in ((1024, 768), (390, 844)):
@@ -281,6 +288,26 @@ def test_a_cursor_before_the_language_server_answers_chooses_its_name(opened):
     put_cursor(page, "  east")
     assert page.locator(".cm-name-class").count() == 0
     says(page, ".chosen-name", "east0 ×")
+
+
+DROP = """([name, text]) => {
+  const dataTransfer = new DataTransfer();
+  dataTransfer.items.add(new File([text], name));
+  const over = (type) => document.querySelector("#map").dispatchEvent(
+    new DragEvent(type, { bubbles: true, cancelable: true, dataTransfer }));
+  return [over("dragover"), over("drop")];
+}"""
+
+
+def test_a_file_dropped_on_the_map_brings_its_places_and_another_is_refused(opened, tmp_path):
+    page = opened("patrol.mission", MISSION)
+    shows(page, ".bigraph svg")
+    assert page.evaluate(DROP, ["buoys.geojson", json.dumps(PLACES)]) == [False, False]  # both are taken
+    until(page, "studio.editor.text.includes('from \"buoys.geojson\"')")
+    until(page, "studio.store.section('places').has('buoy7')")
+    page.evaluate(DROP, ["bad.geojson", "{"])
+    shows(page, ".trouble >> text=bad.geojson: the text is not JSON")
+    assert [each.name for each in tmp_path.glob("*.geojson")] == ["buoys.geojson"]
 
 
 @pytest.mark.parametrize("theme", ["light", "dark"])

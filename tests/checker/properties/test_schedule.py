@@ -96,3 +96,35 @@ def test_zones_say_what_ticks_say_of_what_nothing_bounds():
     )
     assert ticks == zones
     assert [each.ends.latest for each in zones.flights] == [inf, inf]
+
+
+TWO_CHANNELS = """\
+signature standard
+world {
+  base: Location = circle (37, -8.7) radius 300 m
+  uav0: UAV = point (37, -8.7) linked slow, fast
+  gcs0: Station = point (37.0001, -8.7) linked slow, fast
+}
+BigActor a hosted_at uav0 with_behavior { send "x" to b }
+BigActor b hosted_at gcs0 with_behavior { react { case "x" => skip } }
+control timed
+timing {
+  agents react within 1 s
+  messages over fast take SPAN
+}
+check {
+  time "heard": ended b
+}
+"""
+
+
+@pytest.mark.parametrize(
+    ("span", "takes"),
+    [("1 s to 4 s", Interval(0, 4)), ("at least 2 s", Interval(0)), ("4 s", Interval(0, 4))],
+)
+def test_a_message_over_several_channels_takes_as_long_as_the_quickest(span, takes, tmp_path):
+    file = tmp_path / "two_channels.mission"
+    file.write_text(TWO_CHANNELS.replace("SPAN", span), encoding="utf-8")
+    mission = load_mission(file)
+    found = check(mission.initial, mission.properties, times=True).schedule
+    assert [each.takes for each in found.messages] == [takes]

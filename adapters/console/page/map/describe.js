@@ -1,4 +1,4 @@
-/** Descriptions of the chart in words, for screen readers and for the tip at the pointer. */
+/** Descriptions of the chart in words, for screen readers and for the tip at the pointer; at the time 0 nothing is heard. */
 import { ageClass, FRESH } from "./ages.js";
 import { isAstray, orderWords, whereabouts } from "../wording.js";
 import { byName } from "../natural.js";
@@ -17,7 +17,7 @@ export function describe(name, store, now) {
 }
 
 function describeEntity(name, entity, card, now) {
-  const heard = (entity.seen ?? null) === null ? "never heard, where the mission has it" : `heard ${age(entity.seen, now)} ago`;
+  const heard = now === 0 ? "" : (entity.seen ?? null) === null ? "never heard, where the mission has it" : `heard ${age(entity.seen, now)} ago`;
   const old = ageClass(entity, now) === FRESH ? "" : ", old";
   const facts = [drawable(name), String(entity.kind ?? ""), position(entity.at), motion(entity), `${heard}${old}`];
   const place = entity.differs ? whereabouts({ ...card, ...entity }) : "";

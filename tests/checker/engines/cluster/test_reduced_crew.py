@@ -14,17 +14,18 @@ from test_fast_symmetry import EITHER, FAMILIES
 from test_partial_order import BUSY, POR, TEXTS
 from test_preserved_runs import compared, drawn
 
+from benchmarks.patrol import mission_text
 from checker import Engine, Keeping, Limits, RefusedError, explore
 from checker.engines.cluster import explorer, ray_crew, shard
+from checker.engines.cluster.divided_paths import NONE, DividedPaths
 from checker.engines.cluster.explorer import Expedition
-from checker.engines.cluster.shard import Shard
 from checker.engines.contract import Options
 from checker.engines.fast import row_store
 from checker.engines.fast.crosscheck import Disagreement
 from checker.reduction import Reduced
 from semantics.properties.propositions import Inside
 from specs import MissionError
-from specs.elaboration import load_mission
+from specs.elaboration import load_mission, read_mission
 
 
 @pytest.fixture(autouse=True, scope="module")
@@ -74,6 +75,15 @@ def test_two_workers_visit_of_shipped_missions_as_few_as_one_process_does(name):
     assert counted(found) == counted(alone)
 
 
+def test_paths_that_go_round_end_where_those_of_one_process_do(monkeypatch):
+    monkeypatch.setattr(explorer, "ROUND", 64)
+    mission = read_mission(mission_text(2, 2, together=True))
+    formulas = [each.formula for each in mission.properties if each.formula is not None]
+    alone, found = alone_and_together(mission.initial, POR, formulas)
+    assert counted(found) == counted(alone)
+    assert alone.size == 2_652
+
+
 @pytest.mark.parametrize("variation", EITHER)
 def test_a_reduced_search_whose_worker_is_lost_goes_on_from_its_checkpoint(variation, tmp_path):
     initial = FAMILIES["see each other"].initial
@@ -115,7 +125,7 @@ def test_rows_that_wait_for_others_are_expanded_in_full(monkeypatch):
     initial, away = start(BUSY), [Inside("uav0", "gate0", actually=True)]
     full, _ = everything(initial, away)
     assert everything(initial, away, Reduced(initial, POR, away), engine=Engine.RAY)[0] == full
-    monkeypatch.setattr(Shard, "expand_rest", lambda self, _: self.parcels())  # each step leads on
+    monkeypatch.setattr(DividedPaths, "lead_on", lambda *_: NONE)  # each step leads on
     assert everything(initial, away, Reduced(initial, POR, away), engine=Engine.RAY)[0] != full
 
 
