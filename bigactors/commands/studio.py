@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
+import re
 import sys
-from argparse import Namespace
+from argparse import ArgumentTypeError, Namespace
 from contextlib import AsyncExitStack, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from bigactors.arguments.parser import Parser
-from bigactors.arguments.values import at_least_zero
 from bigactors.exits import Exit
 from bigactors.mistakes import Mistake
 from bigactors.terminal import say
@@ -34,6 +34,14 @@ EXAMPLES: Final = (
 PORT: Final = 8766
 """The default port of a studio."""
 
+MOST_PORT: Final = 65_535
+
+
+def _port(text: str) -> int:
+    if not (re.fullmatch(r"[0-9]{1,5}", text) and int(text) <= MOST_PORT):
+        raise ArgumentTypeError(f"'{text:.40}' is no port: a whole number to {MOST_PORT}")
+    return int(text)
+
 
 def add_arguments(parser: Parser) -> None:
     """Add the arguments of `bigactors studio`."""
@@ -45,7 +53,7 @@ def add_arguments(parser: Parser) -> None:
         help="the mission's file; a name of no file begins a new one, that of a shipped mission begins with its text",
     )
     parser.add_argument(
-        "--port", metavar="PORT", type=at_least_zero, help=f"the port (default: {PORT}, or a free one)"
+        "--port", metavar="PORT", type=_port, help=f"the port (default: {PORT}, or a free one)"
     )
     parser.add_argument(
         "--no-browser", action="store_true", help="print the link, and leave the browser to you"
