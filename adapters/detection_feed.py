@@ -15,11 +15,10 @@ from pathlib import Path
 from typing import Final
 from urllib.parse import unquote
 
-from adapters.listening_plugin import Feed
+from adapters.listening_plugin import Feed, in_slices
 from adapters.naming import NamingService
 from adapters.plugin import Aged, Gone, World
-from adapters.slices import in_slices
-from adapters.trouble_throttle import Troubles
+from adapters.rate_limit import Troubles
 from adapters.web import MAX_BODY, Listen, serve
 from physical import PhysicalError, PhysicalProperty, legible, open_file, reading_geojson
 from physical.file_account import Counting

@@ -1,6 +1,10 @@
-"""The common part of plugins that only listen: they command no entity."""
+"""The common part of plugins that only listen: they command no entity, and take long lists in slices."""
 
 from __future__ import annotations
+
+import asyncio
+from collections.abc import AsyncIterator, Iterable
+from typing import Final, TypeVar
 
 from adapters.plugin import Command, Refused
 
@@ -29,3 +33,16 @@ class Feed:
     async def command(self, command: Command) -> None:
         """Refuse the command."""
         raise Refused(f"{command.entity} {self._heard}, and takes no commands")
+
+
+AT_ONCE: Final = 50
+
+Item = TypeVar("Item")
+
+
+async def in_slices(items: Iterable[Item]) -> AsyncIterator[Item]:
+    """Yield the items, and let the event loop continue after every 50 of them."""
+    for number, item in enumerate(items, 1):
+        yield item
+        if number % AT_ONCE == 0:
+            await asyncio.sleep(0)

@@ -14,11 +14,10 @@ from typing import Annotated, Any, Final
 
 from msgspec import Meta, Struct
 
-from adapters.listening_plugin import Feed
+from adapters.listening_plugin import Feed, in_slices
 from adapters.naming import NamingService
 from adapters.plugin import Aged, World
-from adapters.slices import in_slices
-from adapters.trouble_throttle import Troubles
+from adapters.rate_limit import Troubles
 from adapters.typed_json import Word, check_printable, read_typed, typed
 from adapters.web import MAX_BODY, fetching
 from physical import Band, PhysicalError, PhysicalProperty, Velocity, point

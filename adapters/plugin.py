@@ -511,15 +511,12 @@ class World(Protocol):
 
     def publish(self, published: Published) -> None:
         """Take a publication on an entity."""
-        ...
 
     def now(self) -> float:
         """Return the time in seconds since 1970 UTC; it never goes back."""
-        ...
 
     def report(self, report: Report) -> None:
         """Take a report on a request, a link or the input."""
-        ...
 
 
 @runtime_checkable
@@ -538,19 +535,15 @@ class Plugin(Protocol):
     @property
     def name(self) -> str:
         """Its name in reports; unique in a run."""
-        ...
 
     async def run(self, world: World) -> None:
         """Publish until cancelled."""
-        ...
 
     async def command(self, command: Command) -> None:
         """Take on a command for an entity that it owns; raises Refused."""
-        ...
 
     def owns(self, entity: str) -> bool:
         """Whether the entity takes commands from this plugin."""
-        ...
 
 
 @dataclass(frozen=True, slots=True)
@@ -573,31 +566,24 @@ class Preflight(Protocol):
     @property
     def fences(self) -> Mapping[str, Geometry]:
         """The fence of each vehicle that has one."""
-        ...
 
     def owns(self, entity: str) -> bool:
         """Return whether the vehicle is the plugin's."""
-        ...
 
     def is_known(self) -> bool:
         """Return whether all vehicles have reported their state, or were asked for long enough."""
-        ...
 
     def remarks(self) -> Iterable[str]:
         """Return messages to the operator."""
-        ...
 
     def readiness(self, entity: str) -> Readiness:
         """Return a vehicle's readiness, as it was last reported."""
-        ...
 
     def objection(self, entity: str, place: Geometry, name: str, around: Surroundings) -> str | None:
         """Return the reason why a vehicle can't stay at a place and keep to its surroundings; None if it can."""
-        ...
 
     def bar(self, entity: str, place: Geometry, name: str) -> str | None:
         """Return the reason why a vehicle can't pass a place; None if it can."""
-        ...
 
 
 @runtime_checkable
@@ -606,11 +592,9 @@ class Circling(Protocol):
 
     def owns(self, entity: str) -> bool:
         """Return whether the vehicle is the plugin's."""
-        ...
 
     def circle(self, entity: str) -> float:
         """Return the diameter in metres of the circle that a vehicle flies to stay; 0 if it hovers, or if unknown."""
-        ...
 
 
 def circling(plugins: Iterable[Plugin]) -> tuple[Circling, ...]:

@@ -1,11 +1,16 @@
-"""Rate limits: of input from any source, a bounded number a second is kept, and the rest is counted."""
+"""Rate limits: of input from any source, a bounded number a second is kept, and the rest is counted.
+
+Repeated troubles are reported once a second, with their number.
+"""
 
 from __future__ import annotations
 
 import math
 from collections import Counter
 from collections.abc import Hashable
-from typing import Generic, TypeVar
+from typing import Final, Generic, TypeVar
+
+from adapters.plugin import Trouble, World
 
 Source = TypeVar("Source", bound=Hashable)
 
@@ -82,3 +87,34 @@ class Turns(Generic[Source]):
         self._apart = len(self._met) / self._most if len(self._met) > self._most else 0.0
         self._kept = {source: at for source, at in self._kept.items() if now - at < self._apart}
         self._met, self._end, self._left = set(), now + 1.0, self._most
+
+
+EVERY: Final = 1.0
+MAX_KINDS: Final = 64
+"""The most kinds of troubles that are counted apart; others are counted together."""
+
+
+class Troubles:
+    """The troubles since the last report, by kind."""
+
+    def __init__(self, source: str) -> None:
+        self._source = source
+        self._found: dict[str, tuple[str, int]] = {}
+        self._reported: float | None = None
+
+    def note(self, what: str, detail: str = "", count: int = 1) -> None:
+        """Count one trouble, or several; the first detail of its kind is kept."""
+        kind = what if what in self._found or len(self._found) < MAX_KINDS else "other troubles"
+        first, before = self._found.get(kind, (detail, 0))
+        self._found[kind] = (first, before + count)
+
+    def report(self, world: World, *, now: bool = False) -> None:
+        """Report all troubles, if a second has passed since the last report, or at once."""
+        time = world.now()
+        early = self._reported is not None and time - self._reported < EVERY
+        if not self._found or (early and not now):
+            return
+        for what, (detail, count) in self._found.items():
+            world.report(Trouble(self._source, time, what, detail, count))
+        self._found.clear()
+        self._reported = time

@@ -8,7 +8,7 @@ from typing import Final
 
 from adapters.listening_plugin import Feed
 from adapters.plugin import Gone, World
-from adapters.trouble_throttle import Troubles
+from adapters.rate_limit import Troubles
 from physical import PhysicalError, PhysicalProperty, open_file
 from physical.place_files import read_place_file
 

@@ -45,12 +45,10 @@ class Port(Protocol):
 
     def send(self, data: bytes, remote: Remote | None = None) -> None:
         """Send to a remote; if None, to the one that we connect to."""
-        ...
 
     @property
     def local(self) -> Remote:
         """Its local address, once it is open."""
-        ...
 
 
 @asynccontextmanager

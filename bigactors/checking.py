@@ -1,6 +1,6 @@
 """Check one mission: its report, or the failure."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -13,7 +13,6 @@ from bigactors.mission_lookup import checkable, digest_of, open_mission
 from bigactors.mistakes import Mistake, describe_bug
 from bigactors.progress import watching
 from bigactors.terminal import tell
-from bigactors.timeout_consistency import short_limits
 from checker import (
     CheckpointError,
     Cluster,
@@ -31,11 +30,13 @@ from checker import (
     report_json,
 )
 from checker.engines.capabilities import REDUCTIONS, Feature, require
-from checker.engines.contract import TickError
+from checker.engines.contract import TickError, ZoneClock
 from checker.properties.findings import MOST_VIOLATIONS
 from physical import RegionError
 from semantics.state.canonical import digest
 from semantics.state.setting import Control
+from semantics.state.signature import Name
+from semantics.timing.dates import lapse_text
 from specs.elaboration import ElaboratedMission, Variation
 
 FAILURE_SCHEMA = "bigactors.failure/1"
@@ -122,6 +123,7 @@ class How:
     keeping: Keeping | None = None
     cluster: Cluster | None = None
     threads: int | None = None
+    clock: ZoneClock = ZoneClock.LOCAL
     times: bool = False
     ways: bool = False
     regions: bool = False
@@ -148,6 +150,7 @@ def check_mission(
                 keeping=how.keeping and _of_this(how.keeping, mission, limits),
                 cluster=how.cluster,
                 threads=how.threads,
+                clock=how.clock,
                 times=how.times,
                 ways=how.ways or (how.regions and unlisted_ways(mission, how) is None),
             )
@@ -226,3 +229,15 @@ def results_json(results: list[Checked | FailedMission], code: Exit) -> dict[str
         return results[0].as_json()
     reports = [result.as_json() for result in results]
     return {"schema": REPORTS_SCHEMA, "exit_code": int(code), "reports": reports}
+
+
+def short_limits(mission: ElaboratedMission, flights: Mapping[Name, float]) -> Iterator[str]:
+    """Yield a sentence for each live limit that a flight may reach within its allowed time.
+
+    `flights` is the longest flight of each bigActor in seconds.
+    """
+    for limit in mission.precautions.limits:
+        for agent, seconds in sorted(flights.items()):
+            if limit.covers("FLY", agent) and limit.seconds < seconds:
+                given, most = (lapse_text(round(1000 * each)) for each in (limit.seconds, seconds))
+                yield f"live lets {agent} fly for {given}, but by the times its flight may take {most}"

@@ -1,17 +1,49 @@
-"""The command `bigactors`: parse the line, run the command, exit with its code."""
+"""The command `bigactors`: parse the line, run the command, exit with its code; signals end it like Ctrl-C."""
+
+from __future__ import annotations
 
 import gc
 import os
+import signal
 import sys
-from collections.abc import Callable, Sequence
+import threading
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from types import FrameType
 from typing import Final
 
 from bigactors.arguments import parse_arguments
 from bigactors.arguments.parser import command_of
 from bigactors.exits import Exit
 from bigactors.mistakes import Mistake, describe_bug
-from bigactors.signals import ending_as_ctrl_c
 from bigactors.terminal import COLOUR, safe_output, tell
+
+ENDING: Final = tuple(
+    getattr(signal, name) for name in ("SIGTERM", "SIGHUP", "SIGBREAK") if hasattr(signal, name)
+)
+
+
+@contextmanager
+def ending_as_ctrl_c() -> Iterator[None]:
+    """Treat ending signals like Ctrl-C; an ignored signal, as under `nohup`, stays ignored."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    heard = [each for each in ENDING if signal.getsignal(each) is not signal.SIG_IGN]
+    before = {each: signal.signal(each, _interrupt) for each in heard}
+    try:
+        yield
+    finally:
+        for each, handler in before.items():
+            signal.signal(each, handler)
+
+
+def _interrupt(number: int, frame: FrameType | None) -> None:  # noqa: ARG001 - the signature of signal handlers
+    handler = signal.getsignal(signal.SIGINT)
+    if not callable(handler):  # Ctrl-C is ignored, as in a script's background job, but this signal is not
+        raise KeyboardInterrupt
+    handler(signal.SIGINT, frame)
+
 
 OBJECTS_BETWEEN_COLLECTIONS: Final = 200_000
 """Python's default of 700 rescans the imported objects again and again: a tenth of the time of a small check."""

@@ -16,7 +16,7 @@ from typing import Any, BinaryIO
 from adapters.live.batch import Heard
 from adapters.live.live_state import LiveState
 from adapters.live.operator_findings import Finding
-from adapters.live.run_watchers import SHOWN_RULES
+from adapters.live.run_watchers import SHOWN_RULES, Watcher
 from adapters.live.turn_result import LiveStep, Turn
 from adapters.mavlink.tlog import entry
 from adapters.plugin import Report, Status
@@ -44,7 +44,7 @@ Resting = Callable[[Finding], tuple[str, ...]]
 
 
 @dataclass(slots=True)
-class Terminal:
+class Terminal(Watcher):
     """Prints world-changing steps, the displays of agents, findings, and a line about the vehicles.
 
     Attributes:
@@ -83,9 +83,6 @@ class Terminal:
                 f"{vehicle}: {how}; this run does not command it until `bigactors give-back {vehicle}`",
                 "taken over:",
             )
-
-    def arrived(self, heard: Heard, now: float) -> None:
-        """Print nothing: positions are too frequent."""
 
     def reported(self, report: Report, now: float) -> None:  # noqa: ARG002 - the protocol
         """Store a vehicle's status for its line. Print nothing: important reports become findings."""
@@ -169,7 +166,7 @@ def _flying_on() -> Iterator[None]:
 
 
 @dataclass(frozen=True, slots=True)
-class Tape:
+class Tape(Watcher):
     """Writes arrivals, reports and turns into a recording."""
 
     recorder: Recorder

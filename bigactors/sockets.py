@@ -6,6 +6,7 @@ import asyncio
 import os
 import stat
 from collections.abc import Callable, Coroutine
+from getpass import getuser
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -63,6 +64,14 @@ def check_texts(what: str, name: str, by: str, *more: str) -> None:
         raise Mistake(f"{what} has to be text in valid Unicode, of at most 2,000 characters")
     if by and not is_word(by):
         raise Mistake("--by has to be a name of 1 to 200 characters that can be printed")
+
+
+def speaker(by: str | None) -> str:
+    """Return the name of the user who speaks: the given one, else the login; empty if it is unknown."""
+    try:
+        return getuser() if by is None else by
+    except (OSError, KeyError):
+        return ""
 
 
 def heard_at(socket: str | None, saying: Callable[[Path], Coroutine[Any, Any, Heard]]) -> Heard:

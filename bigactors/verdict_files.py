@@ -9,13 +9,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from bigactors import __version__
-from bigactors.checking import Checked
+from bigactors.checking import Checked, short_limits
 from bigactors.code_digest import build_digest
 from bigactors.files import read_json
 from bigactors.mission_lookup import digest_of
 from bigactors.mistakes import Mistake
 from bigactors.signatures import check_signature, signature_json
-from bigactors.timeout_consistency import short_limits
 from semantics.state.canonical import digest
 from semantics.state.physical_model import placement_cell
 from semantics.state.setting import Control, Scheduler

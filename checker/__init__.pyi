@@ -11,6 +11,7 @@ from .engines.contract import Exploration as Exploration
 from .engines.contract import Keeping as Keeping
 from .engines.contract import MachineError as MachineError
 from .engines.contract import Progress as Progress
+from .engines.contract import ZoneClock as ZoneClock
 from .limits import Bound as Bound
 from .limits import Interruption as Interruption
 from .limits import Limits as Limits

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Protocol, assert_never
 
 from checker.engines.capabilities import CombinationError, engines, features, require
 from checker.engines.choose import explore_by
-from checker.engines.contract import Cluster, Engine, Exploration, Keeping, Options, Reporter
+from checker.engines.contract import Cluster, Engine, Exploration, Keeping, Options, Reporter, ZoneClock
+from checker.engines.original_run import in_original_names
 from checker.handover import Compilation, Handover
 from checker.limits import BoundMet, CheckPart, Limits, Stop, bounded
 from checker.properties.assumed_ways import assumed_ways
@@ -27,7 +28,6 @@ from checker.properties.inspections import (
 from checker.properties.ownership import owned
 from checker.properties.races import ControlRaces, StaleObservationRaces
 from checker.properties.visited_statements import Visited
-from checker.reduction.original_run import in_original_names
 from checker.reduction.refusals import Reduction, RefusedError
 from checker.traces import Trace, trace_of, trace_to
 from checker.verdicts import Outcome, Report, Verdict, Verdicts, Violation
@@ -91,6 +91,7 @@ def check(  # noqa: PLR0913 - independent options
     keeping: Keeping | None = None,
     cluster: Cluster | None = None,
     threads: int | None = None,
+    clock: ZoneClock = ZoneClock.LOCAL,
     times: bool = False,
     ways: bool = False,
 ) -> Report:
@@ -111,6 +112,7 @@ def check(  # noqa: PLR0913 - independent options
         keeping: Checkpoints and self-checks of the fast explorer; giving them selects that engine.
         cluster: The workers of the engine Ray.
         threads: The most threads of the fast explorer; by default one for each core.
+        clock: The clock of a search through zones, for a mission with `timing`.
         times: Whether the report says when flights may begin and end, for a mission with `timing`.
         ways: Whether the report lists the ways of all flights, with their lengths and distances.
 
@@ -133,7 +135,9 @@ def check(  # noqa: PLR0913 - independent options
     runs = [each for each in asked if each.is_of_runs]
     reducer = _reduced(initial, reductions, formulas, runs) if reductions else None
     kept, crew = keeping or Keeping(), cluster or Cluster()
-    options = Options(limits, report, reduce=reducer, keeping=kept, cluster=crew, threads=threads)
+    options = Options(
+        limits, report, reduce=reducer, keeping=kept, cluster=crew, threads=threads, clock=clock
+    )
 
     def run(engine: Engine, limits: Limits) -> Report:
         exploration = replace(options, engine=engine, limits=limits)

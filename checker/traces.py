@@ -8,12 +8,11 @@ from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 from checker.engines.contract import Exploration
+from checker.engines.original_run import run_to
 from checker.properties.findings import Finding
-from checker.properties.inspections import is_unfair
 from checker.properties.race_steps import RaceSteps
 from checker.properties.races import STALE
 from checker.properties.stale_steps import stale_steps
-from checker.reduction.original_run import run_to
 from checker.steps import Step, alike, candidates, step_between, step_of
 from physical.wordings import counted
 from semantics.observed_steps import Sight
@@ -24,6 +23,7 @@ from semantics.state.observation_serialization import sight_json, sight_of
 from semantics.state.printing import print_changes
 from semantics.state.station_partition import Elsewhere
 from semantics.successors import expand, turn_of
+from semantics.timing.arrivals import is_unfair
 from semantics.timing.dates import clock_text
 
 if TYPE_CHECKING:

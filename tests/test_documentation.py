@@ -25,11 +25,13 @@ from subprocess import DEVNULL, PIPE, STDOUT, CompletedProcess, Popen
 
 import pytest
 import yaml
+from pygments.lexers import get_all_lexers
 from repository import PAGES, ROOT, name_of
 
 from bigactors import Limits, check, load_mission
 from bigactors.docs import GENERATED
 from bigraphs.notation import read_system
+from docs.lexers import LEXERS
 from specs.missions import shipped_missions
 
 LONG = {
@@ -278,6 +280,11 @@ def test_a_block_has_a_kind_by_which_it_is_run(page):
     assert "```" not in text
     assert [block.place for block in blocks(page) if not block.kind] == []
     assert INDENTED.findall(text) == []
+
+
+def test_the_site_can_colour_each_block():
+    languages = LEXERS.keys() | {alias for _, aliases, _, _ in get_all_lexers() for alias in aliases}
+    assert [block.place for page in PAGES for block in blocks(page) if block.kind not in languages] == []
 
 
 def test_a_block_that_only_shows_something_is_generated_or_says_why():

@@ -23,7 +23,7 @@ from adapters.camera.votes import Region, share
 from adapters.listening_plugin import Feed
 from adapters.naming import NameClash, NamingService
 from adapters.plugin import Aged, Gone, World
-from adapters.trouble_throttle import Troubles
+from adapters.rate_limit import Troubles
 from physical import Geometry, PhysicalError, PhysicalProperty
 
 DOWN: Final = Lens()

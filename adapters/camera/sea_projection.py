@@ -64,7 +64,6 @@ class PixelPositions(Protocol):
 
     def ground(self, x: Array, y: Array) -> tuple[Array, Array]:
         """Return the latitudes and longitudes of pixels; NaN without sea, or for too oblique a view of it."""
-        ...
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,7 +9,6 @@ from typing import Any, Final
 from adapters.console.alerts import vanity
 from adapters.console.console_view import Json
 from adapters.console.facts import Facts
-from adapters.console.mutable_facts import Draft
 from adapters.console.parsing import number, text
 from adapters.live.operator_commands import typed
 from adapters.live.scheduling import in_turn, own_steps
@@ -30,7 +29,7 @@ from semantics.state.station_partition import is_here
 MOST: Final = 1_000
 
 
-def take_deadline(draft: Draft, _time: float, data: Any) -> None:
+def take_deadline(draft: Facts, _time: float, data: Any) -> None:
     """Take in the time until which an agent waits, or the end of its wait."""
     match data:
         case {"agent": str(name), "until": until}:

@@ -6,9 +6,7 @@ from typing import Any, Final
 
 from adapters.console.console_view import Json, Section
 from adapters.console.facts import Facts
-from adapters.console.mutable_facts import Draft
 from adapters.console.parsing import text, texts
-from adapters.console.ticks import tick
 
 MOST: Final = 1_000
 
@@ -42,7 +40,7 @@ CONSOLES_OWN: Final = "0"
 """The key of the console's own alert; findings are counted from 1."""
 
 
-def take_finding(draft: Draft, time: float, data: Any) -> None:
+def take_finding(draft: Facts, time: float, data: Any) -> None:
     """Take in a finding; its number counts the messages of its topic."""
     draft.found += 1
     alert = _alert(time, data)
@@ -54,10 +52,10 @@ def take_finding(draft: Draft, time: float, data: Any) -> None:
         draft.stopped[alert["about"] if alert["kind"] == "late" else ALL] = alert["fallback"]
         draft.stopped.bounded(MOST)
     if alert["kind"] not in OF_ACTIONS:
-        tick(draft, time, "finding")
+        draft.tick(time, "finding")
 
 
-def _is_copied(draft: Draft, time: float) -> bool:
+def _is_copied(draft: Facts, time: float) -> bool:
     """Return whether a finding is from the run that this one resumes.
 
     Its fallback does not count here: a run resumes only when its assumptions hold again.
@@ -65,7 +63,7 @@ def _is_copied(draft: Draft, time: float) -> bool:
     return draft.run is not None and time < draft.run.mission["begun"]
 
 
-def tell(draft: Draft, message: str) -> None:
+def tell(draft: Facts, message: str) -> None:
     """Set the console's own alert, which never stands in the red line."""
     draft.alerts[CONSOLES_OWN] = _alert(draft.time, {"kind": "console", "message": message})
 
@@ -95,7 +93,7 @@ def grounded(agent: str) -> str:
     return f"no command of {agent} is carried out any more"
 
 
-def vanity(facts: Facts | Draft, agent: str) -> str | None:
+def vanity(facts: Facts, agent: str) -> str | None:
     """Return why a message to an agent has no effect; None while the mission still commands vehicles for it."""
     if ALL in facts.stopped:
         return "the mission has fallen back and sends no more commands: messages move no vehicle"

@@ -7,10 +7,13 @@ from typing import Annotated, Any, Final, Literal
 from msgspec import UNSET, Meta, Struct, UnsetType
 from msgspec.structs import astuple
 
-from adapters.console.playhead import FASTEST, SLOWEST
 from adapters.typed_json import read_typed
 from physical import PhysicalError
 from physical.untrusted_text import MAX_TEXT
+
+SLOWEST: Final = 0.5
+FASTEST: Final = 100.0
+"""The bounds of the speed: seconds of the recording per second of wall time."""
 
 PROTOCOL: Final = "bigactors.console/1"
 MOST_BYTES: Final = 16_384

@@ -1,4 +1,4 @@
-"""The session of one browser: the frames sent to it, and its requests (docs/reference/console.md).
+"""The session of one browser: its play head, the frames sent to it, and its requests (docs/reference/console.md).
 
 Each frame is the difference from the last view sent. It is computed when the socket has taken the last frame: a slow
 browser gets fewer and larger steps, never a queue.
@@ -10,7 +10,7 @@ import asyncio
 import json
 import time
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Final
 
@@ -29,10 +29,61 @@ from adapters.console.browser_requests import (
 )
 from adapters.console.console_view import View, difference
 from adapters.console.history import History, Moment
-from adapters.console.playhead import Playhead
 from adapters.console.run_client import Performing
 from adapters.live.operator_socket import Outcome
 from adapters.rate_limit import Ration
+
+
+@dataclass(frozen=True, slots=True)
+class Playhead:
+    """A browser's place on the time line.
+
+    Attributes:
+        at: The recording's time that was shown at `since`; None for the newest moment, even as new messages come.
+        since: The time of a monotonic clock.
+        playing: Whether the shown time goes on.
+        speed: Seconds of the recording per second of wall time.
+    """
+
+    at: float | None = None
+    since: float = 0.0
+    playing: bool = False
+    speed: float = 1.0
+
+    @property
+    def live(self) -> bool:
+        """Whether the newest moment is shown."""
+        return self.at is None
+
+    def now(self, clock: float, newest: float) -> float:
+        """Return the shown time, at most the newest.
+
+        >>> Playhead(100.0, since=5.0, playing=True, speed=10.0).now(7.0, 1000.0)
+        120.0
+        """
+        if self.at is None:
+            return newest
+        passed = (clock - self.since) * self.speed if self.playing else 0.0
+        return min(newest, self.at + passed)
+
+    def seek(self, time: float, clock: float, begin: float, newest: float) -> Playhead:
+        """Return the play head at another time; a playing one goes on playing."""
+        return replace(self, at=max(begin, min(newest, time)), since=clock)
+
+    def play(self, speed: float, clock: float, newest: float) -> Playhead:
+        """Return the play head playing from the shown time at a speed."""
+        return Playhead(self.now(clock, newest), clock, playing=True, speed=speed)
+
+    def pause(self, clock: float, newest: float) -> Playhead:
+        """Return the play head paused at the shown time."""
+        return Playhead(self.now(clock, newest), clock, speed=self.speed)
+
+    def caught_up(self, clock: float, newest: float, *, ended: bool) -> Playhead:
+        """Return the play head, live if it has played up to the newest moment; paused there if the run has ended."""
+        if not self.playing or self.now(clock, newest) < newest:
+            return self
+        return self.pause(clock, newest) if ended else Playhead()
+
 
 EVERY: Final = 0.1
 """Seconds between two frames to a browser."""

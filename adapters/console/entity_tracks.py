@@ -8,7 +8,6 @@ from typing import Any, Final
 
 from adapters.console.console_view import Json
 from adapters.console.facts import Facts, Link, Position, SeenEntity, Shape, Trail
-from adapters.console.mutable_facts import Draft
 from adapters.console.parsing import band, number, position, ring, text, texts
 from adapters.console.station_list import obeys
 from adapters.live.command_planning import is_authority
@@ -25,7 +24,7 @@ EVERY: Final = 1.0
 """Seconds between two positions of a trail, before it is thinned out."""
 
 
-def take_arrival(draft: Draft, time: float, data: Any) -> None:
+def take_arrival(draft: Facts, time: float, data: Any) -> None:
     """Take in a sighting of a plugin; a position older than the known one is dropped."""
     entity, said = data.get("entity"), data.get("ring")
     if not isinstance(entity, str) or _is_anothers(draft, entity, data.get("plugin")):
@@ -39,7 +38,7 @@ def take_arrival(draft: Draft, time: float, data: Any) -> None:
         draft.shapes[entity] = Shape(text(data.get("kind")), shape, band(data.get("altitude")))
 
 
-def _is_anothers(draft: Draft, entity: str, plugin: Any) -> bool:
+def _is_anothers(draft: Facts, entity: str, plugin: Any) -> bool:
     """Return whether a plugin reports a vehicle of another plugin.
 
     With stations every plugin may report a vehicle: several stations hear it over several links.
@@ -49,7 +48,7 @@ def _is_anothers(draft: Draft, entity: str, plugin: Any) -> bool:
     return owner is not None and owner != plugin
 
 
-def _see(draft: Draft, entity: str, time: float, data: Any) -> None:
+def _see(draft: Facts, entity: str, time: float, data: Any) -> None:
     at, stamp, known = position(data["ring"][0]), number(data.get("time")), draft.seen.get(entity)
     stamp = time if stamp is None else stamp
     if at is None or (known is not None and stamp < known.time) or not _has_room(draft, entity, time):
@@ -85,7 +84,7 @@ def _velocity(value: Any) -> tuple[float | None, float | None]:
     return None, None
 
 
-def _has_room(draft: Draft, entity: str, time: float) -> bool:
+def _has_room(draft: Facts, entity: str, time: float) -> bool:
     """Return whether an entity is known or may be added; expired sightings are dropped when the table is full."""
     if entity in draft.seen or len(draft.seen) < MOST_ENTITIES:
         return True

@@ -1,10 +1,12 @@
-"""The facts: the content of a recording up to some message, as frozen values. Views are made from them."""
+"""The facts: the content of a recording up to some message. Views are made from them."""
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
-from typing import Any, NamedTuple
+from copy import copy
+from dataclasses import dataclass, field, fields
+from typing import Any, Final, NamedTuple, TypeVar
 
 from adapters.console.console_view import Json, Section
 from adapters.live.due_times import HeadRequest
@@ -12,6 +14,13 @@ from adapters.live.overrides import StandingOrder
 from semantics.live_policy import Fallback, TimeLimit
 from semantics.state.configuration import Configuration, Label
 from semantics.state.signature import Name
+
+Value = TypeVar("Value")
+
+MOST_VEHICLES: Final = 1_000
+"""The most vehicles in a table of facts; the oldest are dropped."""
+
+MOST_TICKS: Final = 2_000
 
 Position = tuple[float, float]
 """Latitude and longitude in degrees."""
@@ -61,7 +70,7 @@ class Standing:
         rules: The rules of its mission.
         configuration: ⟨α | S | η⟩.
         change: The last change of its L or P.
-        heads: The requests at the heads of lines, and the start of their waits, as in `adapters.live.request_timeouts`.
+        heads: The requests at the heads of lines, and the start of their waits, as in `adapters.live.fallbacks`.
     """
 
     rules: Rules
@@ -195,9 +204,18 @@ class Run:
     rate: float | None = 1.0
 
 
-@dataclass(frozen=True, slots=True)
+class Table(dict[str, Value]):
+    """A part of the facts: values by their keys, each replaced as a whole and never changed in place."""
+
+    def bounded(self, most: int) -> None:
+        """Drop the oldest values above a number."""
+        while len(self) > most:
+            del self[next(iter(self))]
+
+
+@dataclass(slots=True)
 class Facts:
-    """The content of a recording up to some message.
+    """The content of a recording up to some message. The fold changes a copy, which then stands for itself.
 
     Attributes:
         run: The mission and its settings; None before the message `run`.
@@ -234,6 +252,7 @@ class Facts:
         acted: The number of actions so far.
         stations: For each station, the time of its last message, and whether it is reached.
         preflight: The section `preflight`.
+        changed: Whether a message was taken in since they were copied.
     """
 
     run: Run | None = None
@@ -243,30 +262,55 @@ class Facts:
     broken_off: bool = False
     step: int = 0
     standing: Standing | None = None
-    seen: Mapping[Name, SeenEntity] = field(default_factory=dict)
-    shapes: Mapping[Name, Shape] = field(default_factory=dict)
-    trails: Mapping[Name, Trail] = field(default_factory=dict)
-    links: Mapping[Name, Link] = field(default_factory=dict)
-    orders: Mapping[Name, VehicleCommand] = field(default_factory=dict)
-    hand_overs: Mapping[Name, VehicleCommand] = field(default_factory=dict)
-    status: Mapping[Name, Json] = field(default_factory=dict)
-    words: Mapping[Name, Json] = field(default_factory=dict)
-    taken: Mapping[Name, str] = field(default_factory=dict)
-    standing_orders: Mapping[Name, OrderState] = field(default_factory=dict)
-    rebinds: Mapping[Name, tuple[str, str]] = field(default_factory=dict)
-    stopped: Mapping[Name, str] = field(default_factory=dict)
-    authority: Mapping[Name, ControllingStations] = field(default_factory=dict)
-    deadlines: Mapping[Name, float] = field(default_factory=dict)
-    flights: Mapping[Name, Json] = field(default_factory=dict)
-    ways: Mapping[Name, Json] = field(default_factory=dict)
-    invariants: Section = field(default_factory=dict)
+    seen: Table[SeenEntity] = field(default_factory=Table)
+    shapes: Table[Shape] = field(default_factory=Table)
+    trails: Table[Trail] = field(default_factory=Table)
+    links: Table[Link] = field(default_factory=Table)
+    orders: Table[VehicleCommand] = field(default_factory=Table)
+    hand_overs: Table[VehicleCommand] = field(default_factory=Table)
+    status: Table[Json] = field(default_factory=Table)
+    words: Table[Json] = field(default_factory=Table)
+    taken: Table[str] = field(default_factory=Table)
+    standing_orders: Table[OrderState] = field(default_factory=Table)
+    rebinds: Table[tuple[str, str]] = field(default_factory=Table)
+    stopped: Table[str] = field(default_factory=Table)
+    authority: Table[ControllingStations] = field(default_factory=Table)
+    deadlines: Table[float] = field(default_factory=Table)
+    flights: Table[Json] = field(default_factory=Table)
+    ways: Table[Json] = field(default_factory=Table)
+    invariants: Table[Json] = field(default_factory=Table)
     failed: frozenset[Name] = frozenset()
-    steps: Section = field(default_factory=dict)
-    ticks: Section = field(default_factory=dict)
+    steps: Table[Json] = field(default_factory=Table)
+    ticks: Table[Json] = field(default_factory=Table)
     ticked: int = 0
-    alerts: Section = field(default_factory=dict)
+    alerts: Table[Json] = field(default_factory=Table)
     found: int = 0
-    actions: Section = field(default_factory=dict)
+    actions: Table[Json] = field(default_factory=Table)
     acted: int = 0
-    stations: Mapping[str, Json] = field(default_factory=dict)
-    preflight: Section = field(default_factory=dict)
+    stations: Table[Json] = field(default_factory=Table)
+    preflight: Table[Json] = field(default_factory=Table)
+    changed: bool = False
+
+    def copy(self) -> Facts:
+        """Return facts that may be changed without changing these."""
+        made = copy(self)
+        made.changed = False
+        for each in fields(made):
+            if isinstance(table := getattr(made, each.name), Table):
+                setattr(made, each.name, Table(table))
+        return made
+
+    def end(self, reason: str, *, broken_off: bool = True) -> None:
+        """Note the end of the run, unless it is known; `broken_off`: the recording itself gives no reason."""
+        if self.ended is None:
+            self.ended, self.broken_off, self.changed = reason, broken_off, True
+
+    def tick(self, time: float, sort: str) -> None:
+        """Add a tick; above `MOST_TICKS`, every second tick of the commonest sort is dropped."""
+        self.ticked += 1
+        self.ticks[str(self.ticked)] = (time, sort)
+        if len(self.ticks) > MOST_TICKS:
+            ((commonest, _),) = Counter(said for _, said in self.ticks.values()).most_common(1)
+            numbers = [number for number, (_, said) in self.ticks.items() if said == commonest]
+            for number in numbers[1::2]:
+                del self.ticks[number]

@@ -7,10 +7,8 @@ from functools import lru_cache
 from typing import Any, Final
 
 from adapters.console.console_view import Json
-from adapters.console.facts import Link, Position, VehicleCommand
-from adapters.console.fates import confirm, end, refuse, sent
-from adapters.console.giving_back import not_rebound, rebind, rebound
-from adapters.console.mutable_facts import MOST_VEHICLES, Draft, Table
+from adapters.console.facts import MOST_VEHICLES, Facts, Link, Position, Table, VehicleCommand
+from adapters.console.fates import confirm, end, not_rebound, rebind, rebound, refuse, sent
 from adapters.console.parsing import count, number, text, texts
 from adapters.console.station_list import obeys
 from physical import PhysicalError, waypoint
@@ -27,7 +25,7 @@ STATES: Final = {"Accepted": "accepted", "Arrived": "arrived", "Rejected": "refu
 MOST_WAY: Final = 100
 
 
-def take_command(draft: Draft, time: float, data: Any) -> None:
+def take_command(draft: Facts, time: float, data: Any) -> None:
     """Take in a command to a vehicle; a known request with a new path keeps its start and its state."""
     match data:
         case {
@@ -67,7 +65,7 @@ def _waypoint(place: Any) -> Position | None:
     return north / E7, east / E7
 
 
-def take_report(draft: Draft, time: float, data: Any) -> None:
+def take_report(draft: Facts, time: float, data: Any) -> None:
     """Take in a plugin's report about a request or a link."""
     match data:
         case {
@@ -89,7 +87,7 @@ def take_report(draft: Draft, time: float, data: Any) -> None:
             rebound(draft, time, name)
 
 
-def _answer(draft: Draft, time: float, name: str, request: str, report: str, why: str) -> None:
+def _answer(draft: Facts, time: float, name: str, request: str, report: str, why: str) -> None:
     """Take in a report about a command to a vehicle."""
     if report == "Sent":
         order: VehicleCommand | None = draft.orders.get(name)
@@ -106,7 +104,7 @@ def _answer(draft: Draft, time: float, name: str, request: str, report: str, why
         confirm(draft, time, name, request)
 
 
-def take_flight(draft: Draft, _time: float, data: Any) -> None:
+def take_flight(draft: Facts, _time: float, data: Any) -> None:
     """Take in the duration of a flight, or its end."""
     match data:
         case {"vehicle": str(name), "takes": takes}:
@@ -131,7 +129,7 @@ def _becomes(orders: Table[VehicleCommand], name: str, request: str, state: str,
         orders[name] = replace(order, state=state, why=why)
 
 
-def arrive(draft: Draft, label: Label, c: Configuration) -> None:
+def arrive(draft: Facts, label: Label, c: Configuration) -> None:
     """Mark orders as done by the step that completes them: `commit`, or `actuate` for a hand-over."""
     table = {"commit": draft.orders, "actuate": draft.hand_overs}.get(label.rule)
     if table is not None and isinstance(label.about, CTR | FLY):
@@ -157,7 +155,7 @@ def concerned(c: Configuration, request: Request) -> tuple[Name, ...]:
 # --- the vehicles' status and texts -------------------------------------------------------------------
 
 
-def take_status(draft: Draft, time: float, data: Any) -> None:
+def take_status(draft: Facts, time: float, data: Any) -> None:
     """Take in a vehicle's status."""
     match data:
         case {"entity": str(name)}:
@@ -192,7 +190,7 @@ def _battery(value: Any) -> dict[str, float | None] | None:
     return None
 
 
-def take_words(draft: Draft, time: float, data: Any) -> None:
+def take_words(draft: Facts, time: float, data: Any) -> None:
     """Take in a text message of a vehicle."""
     match data:
         case {"entity": str(name), "text": str(said)}:

@@ -17,7 +17,6 @@ from typing import Final, Protocol
 from adapters.console.console_view import NOTHING, Json, View
 from adapters.console.facts import Change, Facts, Opening
 from adapters.console.fold import take, time_of
-from adapters.console.mutable_facts import Draft
 from adapters.console.sections import view_of
 from adapters.recording.foxglove import OTHERS
 from adapters.recording.mcap_files import McapReader, Message, Place, RecordingError
@@ -44,18 +43,6 @@ class Drawing(Protocol):
 
     def begin(self, change: Change) -> bool:
         """Begin to draw it, and return whether it has begun; False while another picture is in progress."""
-
-
-class Undrawn:
-    """A drawer that draws nothing."""
-
-    def drawn(self, _change: Change) -> str | None:
-        """Return nothing."""
-        return None
-
-    def begin(self, _change: Change) -> bool:
-        """Begin nothing."""
-        return False
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,7 +72,7 @@ class History:
         self.path = path
         self._reader = McapReader(path, unread=(OTHERS,))
         self.opening = opening
-        self._drawing: Drawing = Undrawn() if drawing is None else drawing
+        self._drawing = drawing
         self._live = live
         self.behind = True
         self.trouble = ""
@@ -136,7 +123,7 @@ class History:
             self.behind = False
             return False
         until = clocks.monotonic() + budget
-        draft, more = Draft(self.facts), False
+        draft, more = self.facts.copy(), False
         try:
             for message in self._appended():
                 take(draft, message, self.opening)
@@ -157,15 +144,15 @@ class History:
         if self._reader.ended and not more:
             draft.end("the recording has ended")
         if draft.changed:
-            self.facts, self._told_at = draft.facts(), clocks.monotonic()
+            self.facts, self._told_at = draft, clocks.monotonic()
         self.behind = more
         return more
 
     def end(self, reason: str) -> None:
         """Note that nothing follows, unless the recording has given a reason."""
-        draft = Draft(self.facts)
+        draft = self.facts.copy()
         draft.end(reason)
-        self.facts = draft.facts()
+        self.facts = draft
 
     def newest(self) -> View:
         """Return the view at the newest moment."""
@@ -200,18 +187,18 @@ class History:
                     raise RecordingError(f"it has more than {MOST_MESSAGES:,} messages")
                 yield message
 
-    def _checked(self, draft: Draft, effort: int) -> Draft:
-        """Return the draft, or a new one after a checkpoint."""
+    def _checked(self, draft: Facts, effort: int) -> Facts:
+        """Return the draft, or a copy after a checkpoint."""
         self._effort += effort
         if draft.run is None or (self._checkpoints and self._effort < self._apart):
             return draft
-        self.facts = facts = draft.facts()
-        self._checkpoints.append(Checkpoint(self.place, facts))
+        self.facts = draft
+        self._checkpoints.append(Checkpoint(self.place, draft))
         self._effort = 0
         if len(self._checkpoints) > MOST_CHECKPOINTS:
             del self._checkpoints[1::2]
             self._apart *= 2
-        return Draft(facts)
+        return draft.copy()
 
 
 def _time_of(checkpoint: Checkpoint) -> float:
@@ -221,8 +208,8 @@ def _time_of(checkpoint: Checkpoint) -> float:
 class BrowserDisplay:
     """The view of one browser; unchanged values stay the same objects."""
 
-    def __init__(self, drawing: Drawing) -> None:
-        """Show nothing yet."""
+    def __init__(self, drawing: Drawing | None) -> None:
+        """Show nothing yet; without a drawer, L is never drawn."""
         self._drawing = drawing
         self._shown: tuple[Facts, Facts, Json] | None = None
         self._now = 0.0
@@ -243,19 +230,19 @@ class BrowserDisplay:
 
     def _drawn(self, facts: Facts) -> Json:
         """Return the newest finished picture of L, and begin the next one."""
-        if facts.standing is None:
+        if facts.standing is None or self._drawing is None:
             return self._picture
         change = facts.standing.change
         for each in (self._begun, change):
             if each is not None and each is not self._pictured:
-                self._take(each)
+                self._take(each, self._drawing)
         if change is not self._pictured and self._begun is None and self._drawing.begin(change):
             self._begun = change
         return self._picture
 
-    def _take(self, change: Change) -> None:
+    def _take(self, change: Change, drawing: Drawing) -> None:
         """Show the picture after a change, if it is ready."""
-        svg = self._drawing.drawn(change)
+        svg = drawing.drawn(change)
         if svg is not None:
             self._picture = {"svg": svg or None, "drawn": change.number}
             self._pictured, self._begun = change, None
@@ -276,14 +263,14 @@ class Moment:
     def forward(self, time: float) -> View:
         """Return the view at a time, before or after the last one; going on from the last one is cheap."""
         self._jump(time)
-        draft = Draft(self._facts)
+        draft = self._facts.copy()
         for message in self._messages():
             if time_of(draft, message) > time:
                 self._ahead = message
                 break
             take(draft, message, self._history.opening)
         if draft.changed:
-            self._facts = draft.facts()
+            self._facts = draft
         head = self._history.facts
         return self._display.show(self._facts, max(self._facts.time, min(time, head.time)), head)
 

@@ -6,9 +6,8 @@ from typing import Any, Final
 
 from adapters.console.alerts import vanity
 from adapters.console.console_view import Json
-from adapters.console.mutable_facts import Draft
+from adapters.console.facts import Facts
 from adapters.console.parsing import text, texts
-from adapters.console.ticks import tick
 
 MOST: Final = 500
 MOST_NAMED: Final = 1_000
@@ -17,7 +16,7 @@ SETTLED: Final = ("confirmed", "refused")
 """The final states of an action."""
 
 
-def take_saying(draft: Draft, time: float, data: Any) -> None:
+def take_saying(draft: Facts, time: float, data: Any) -> None:
     """Take in an operator's message to an agent: it is in the mailbox, or was refused."""
     match data:
         case {"agent": str(agent), "message": str(message)}:
@@ -27,7 +26,7 @@ def take_saying(draft: Draft, time: float, data: Any) -> None:
                 draft.actions[number] = said
 
 
-def act(draft: Draft, time: float, data: Any, what: str, about: str, state: str = "confirmed") -> str:
+def act(draft: Facts, time: float, data: Any, what: str, about: str, state: str = "confirmed") -> str:
     """Add an action in a state, or as refused if the run refused it; return its number."""
     draft.acted += 1
     why = text(data.get("refusal"))
@@ -47,7 +46,7 @@ def act(draft: Draft, time: float, data: Any, what: str, about: str, state: str 
     }
     draft.actions.bounded(MOST)
     if sort := "note" if what == "note" else "action" if state != "confirmed" or what == "give back" else "":
-        tick(draft, time, sort)
+        draft.tick(time, sort)
     return str(draft.acted)
 
 
@@ -56,7 +55,7 @@ def _left_out(said: Any) -> dict[str, str]:
     return {text(name): text(why) for name, why in named}
 
 
-def settle(draft: Draft, time: float, number: str, state: str, why: str = "") -> None:
+def settle(draft: Facts, time: float, number: str, state: str, why: str = "") -> None:
     """Set the final state of an action."""
     action: Json = draft.actions.get(number)
     if action is not None:
@@ -66,7 +65,7 @@ def settle(draft: Draft, time: float, number: str, state: str, why: str = "") ->
 # --- acknowledgements ---------------------------------------------------------------------------------
 
 
-def take_acknowledgement(draft: Draft, time: float, data: Any) -> None:
+def take_acknowledgement(draft: Facts, time: float, data: Any) -> None:
     """Take in that an operator has acknowledged a finding."""
     match data:
         case {"finding": int(number)} if str(number) in draft.alerts:
@@ -79,7 +78,7 @@ def take_acknowledgement(draft: Draft, time: float, data: Any) -> None:
 # --- notes --------------------------------------------------------------------------------------------
 
 
-def take_note(draft: Draft, time: float, data: Any) -> None:
+def take_note(draft: Facts, time: float, data: Any) -> None:
     """Take in an operator's note."""
     match data:
         case {"text": str(said)}:

@@ -7,14 +7,13 @@ from typing import Any, Final
 
 from adapters.console.console_view import Json
 from adapters.console.facts import ControllingStations, Facts
-from adapters.console.mutable_facts import Draft
 from adapters.console.parsing import number, text
 from semantics.state.signature import Name
 
 MOST: Final = 1_000
 
 
-def take_presence(draft: Draft, _time: float, data: Any) -> None:
+def take_presence(draft: Facts, _time: float, data: Any) -> None:
     """Take in whether another station of the run is reached."""
     station = text(data.get("station"))
     if draft.run is not None and station in draft.run.stations:
@@ -26,7 +25,7 @@ def take_presence(draft: Draft, _time: float, data: Any) -> None:
         }
 
 
-def obeys(draft: Draft, time: float, name: Name, stations: tuple[str, ...]) -> None:
+def obeys(draft: Facts, time: float, name: Name, stations: tuple[str, ...]) -> None:
     """Note the controlling stations of a vehicle; an empty tuple means unknown and changes nothing."""
     known = draft.authority.get(name)
     if not stations or (known is not None and known.stations == stations):

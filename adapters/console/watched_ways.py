@@ -5,15 +5,14 @@ from __future__ import annotations
 from typing import Any, Final
 
 from adapters.console.console_view import Json
-from adapters.console.facts import Facts, Position
-from adapters.console.mutable_facts import MOST_VEHICLES, Draft
+from adapters.console.facts import MOST_VEHICLES, Facts, Position
 from adapters.console.parsing import count, number, position, text, texts
 
 MOST_POINTS: Final = 500
 MOST_INVARIANTS: Final = 200
 
 
-def take_way(draft: Draft, _time: float, data: Any) -> None:
+def take_way(draft: Facts, _time: float, data: Any) -> None:
     """Take in the points to which a vehicle is sent."""
     match data:
         case {"vehicle": str(name), "way": {"to": to, "points": [*points], "passed": passed}}:
@@ -24,7 +23,7 @@ def take_way(draft: Draft, _time: float, data: Any) -> None:
             draft.ways.pop(name, None)
 
 
-def take_invariant(draft: Draft, _time: float, data: Any) -> None:
+def take_invariant(draft: Facts, _time: float, data: Any) -> None:
     """Take in an invariant about ways, as it was compared with what is seen."""
     match data:
         case {"property": str(name), "holds": bool(holds), "points": [*points]}:

@@ -3,18 +3,134 @@
 from __future__ import annotations
 
 from bisect import bisect_right
+from dataclasses import replace
 
-from adapters.live.request_service import serve
-from adapters.live.scheduling import PATIENCE, STEPS_PER_SECOND, own_steps
+from adapters.live.command_planning import is_done, journey, needed_hand_overs, unshown
+from adapters.live.commanded import GivenCommand
+from adapters.live.flying import begin_of
+from adapters.live.scheduling import PATIENCE, STEPS_PER_SECOND, own_steps, served, to_serve
 from adapters.live.step_taking import take
 from adapters.live.turn_in_progress import Turning
+from adapters.plugin import HandOver
 from semantics.behaviours.expressions import Fault
 from semantics.behaviours.process_conversion import next_statement
 from semantics.behaviours.statements import React
 from semantics.bigactor_rules import timeout
+from semantics.control import Realisation, obstacle, realisations
 from semantics.state.configuration import Transition
+from semantics.state.eta import PendingRequest
+from semantics.state.requests import CTR
 from semantics.state.signature import Name
 from semantics.state.station_partition import is_here
+
+Service = tuple[tuple[Transition, ...], bool]
+"""The transitions that serve a request now, and whether it only waits for a vehicle's confirmation."""
+
+
+def serve(turning: Turning) -> bool:
+    """Serve the first request that can be served, oldest first; return whether there was one."""
+    if turning.agents.quiet is turning.c:
+        return False
+    for pending in to_serve(turning.c):
+        found, waits = _service(turning, pending)
+        if found:
+            take(turning, found[0], found)
+            return True
+        if waits and turning.plan.strict:
+            return False
+    turning.agents = turning.agents.quiet_in(turning.c)
+    return False
+
+
+def _service(turning: Turning, pending: PendingRequest) -> Service:
+    request = pending.request
+    found = served(turning.c, pending)
+    if not isinstance(request, CTR):
+        unseen = turning.sightings.unseen  # each answer misses more entities than those before
+        return tuple(each for each in reversed(found) if unseen.issuperset(each.label.missed)), False
+    if turning.overrides.stops(request.agent):
+        return (), False
+    if not found:
+        _blocked(turning, request)
+        return (), False
+    ways = realisations(turning.c, request)
+    way = next(way for way in ways if not (way.flying and way.waits(turning.c)))
+    return _controlled(turning, request, way, found)
+
+
+def _blocked(turning: Turning, request: CTR) -> None:
+    reason = obstacle(turning.c, request)
+    if reason is not None:
+        message = f"{request} is {reason.value}; it stays pending"
+        turning.find("blocked", request.agent, message, once=True)
+
+
+def _controlled(turning: Turning, request: CTR, way: Realisation, found: tuple[Transition, ...]) -> Service:
+    """Give the commands of a control, and return its transition once it may be taken."""
+    unseen = unshown(turning.c, request, way, frozenset(turning.plan.vehicles))
+    if unseen:
+        turning.find("blocked", request.agent, f"{request}: {unseen}; it stays pending", once=True)
+        return (), True
+    if way.flying:
+        return (found if _set_out(turning, request, way) else ()), False
+    confirmed = _hand_over(turning, request, way)
+    return (found if confirmed else ()), not confirmed
+
+
+def _set_out(turning: Turning, request: CTR, way: Realisation) -> bool:
+    """Command the flights of a control; return whether all vehicles hear, and know where to go."""
+    for node, _ in way.flying:
+        if not _hears(turning, node):
+            return False
+    for node, place in way.flying:
+        name, first = turning.request_of(request.agent), turning.plan.first
+        going = journey(turning.c, way, node, place, name, first)
+        if going is None:
+            return False
+        given = GivenCommand(going, request.agent, turning.now, begin=begin_of(turning, node))
+        turning.commanded = turning.commanded.flying(node, given)
+        turning.command(going)
+    return True
+
+
+def _hand_over(turning: Turning, request: CTR, way: Realisation) -> bool:
+    """Command the hand-overs of a control; return whether all are confirmed."""
+    needed = needed_hand_overs(turning.c, request, way, frozenset(turning.plan.vehicles))
+    waiting = [each for each in needed if not _confirmed(turning, each)]
+    for each in waiting:
+        _command_hand_over(turning, each, request.agent)
+    if waiting:
+        return False
+    for each in needed:
+        turning.commanded = turning.commanded.handed_over(each.entity)
+    return True
+
+
+def _hears(turning: Turning, node: Name) -> bool:
+    """Return whether a vehicle is heard and obeys the mission; report a node that is no vehicle of this station."""
+    owner = turning.plan.vehicles.get(node)
+    if owner is None or owner == turning.plan.peers:
+        here = "" if owner is None else " at this station"
+        message = f"no vehicle takes commands as {node}{here}: give --vehicle {node}=..."
+        turning.find("blocked", node, message, once=True)
+        return False
+    heard = node in turning.sightings.newest and node not in turning.sightings.lost
+    return heard and node not in turning.overrides.taken
+
+
+def _confirmed(turning: Turning, hand_over: HandOver) -> bool:
+    sighting = turning.sightings.newest.get(hand_over.entity)
+    return sighting is not None and is_done(hand_over, sighting.property.channels)
+
+
+def _command_hand_over(turning: Turning, hand_over: HandOver, agent: Name) -> None:
+    """Command a hand-over, unless it was commanded before or the vehicle does not hear."""
+    entity = hand_over.entity
+    if entity not in turning.commanded.hand_overs and _hears(turning, entity):
+        command = replace(hand_over, request=turning.request_of(agent))
+        given = GivenCommand(command, agent, turning.now)
+        turning.commanded = turning.commanded.handing_over(entity, given)
+        turning.command(command)
 
 
 def go_on(turning: Turning, most: int) -> None:

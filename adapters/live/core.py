@@ -11,7 +11,7 @@ from dataclasses import replace
 from adapters.live.agent_rounds import go_on
 from adapters.live.batch import Batch
 from adapters.live.commanded import Commanded
-from adapters.live.fallbacks import answers_for
+from adapters.live.fallbacks import answers_for, check_limits
 from adapters.live.flying import remember
 from adapters.live.ingest import take_in
 from adapters.live.live_state import LiveState
@@ -19,7 +19,6 @@ from adapters.live.operator_commands import answer
 from adapters.live.order_progress import repeat_refused
 from adapters.live.plan import Plan
 from adapters.live.property_watch import watch_properties
-from adapters.live.request_timeouts import check_limits
 from adapters.live.scheduling import in_turn
 from adapters.live.step_taking import check_times
 from adapters.live.turn_in_progress import Turning

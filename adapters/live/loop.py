@@ -16,14 +16,13 @@ from collections import OrderedDict
 from collections.abc import Callable, Container, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
-from adapters.live.batch import Batch, Heard, Said, Saying
+from adapters.live.batch import Batch, Heard, Said, Saying, flaw_of, legible_report
 from adapters.live.core import advance, is_over, is_refused, watch
 from adapters.live.live_state import LiveState
 from adapters.live.operator_findings import Finding
 from adapters.live.plan import Plan
 from adapters.live.run_watchers import Watcher, Watchers
 from adapters.live.turn_result import Answer, Turn
-from adapters.live.validation import flaw_of, legible_report
 from adapters.plugin import (
     Command,
     Failed,
@@ -42,8 +41,8 @@ from adapters.plugin import (
     Status,
     entity_of,
 )
+from adapters.rate_limit import Troubles
 from adapters.silence_clock import Listening
-from adapters.trouble_throttle import Troubles
 from physical import is_text
 
 GATHER = 0.002

@@ -69,9 +69,7 @@ async def listening(
             with suppress(OSError, ValueError, TimeoutError, asyncio.IncompleteReadError):
                 async with asyncio.timeout(PATIENCE):
                     line = await reader.readuntil()
-                by = _starter(line)
-                starts = None if by is None else {"refusal": start(by)}
-                answer = starts or await _answer(line, listener, describe, fates)
+                answer = await _answer(line, listener, describe, fates, start)
                 writer.write(json.dumps(answer).encode() + b"\n")
                 await writer.drain()
         finally:
@@ -120,13 +118,15 @@ def _accepting(server: socket, serve: Serve) -> Iterator[None]:
 
 
 async def _answer(
-    line: bytes, listener: Listener, describe: Callable[[], str], fates: Callable[[], Fates]
+    line: bytes, listener: Listener, describe: Callable[[], str], fates: Callable[[], Fates], start: Starter
 ) -> dict[str, object]:
     if line == ASKED:
         return {"refusal": "", "status": describe()}
     if line == ASKED_FATES:
         return {"refusal": "", "fates": dict(fates())}
     said = _said(line)
+    if isinstance(said, str):
+        return {"refusal": start(said)}
     if said is None:
         return {"refusal": f"this is no request: expected {EXPECTED}"}
     answer = await listener(said)
@@ -134,17 +134,8 @@ async def _answer(
     return {"refusal": answer.refusal, **{name: each for name, each in more.items() if each}}
 
 
-def _starter(line: bytes) -> str | None:
-    """Return the operator who starts the run by a line, None if the line is no start."""
-    with suppress(PhysicalError):
-        match read_json(line, MOST_BYTES):
-            case {"start": True, **rest} if (by := rest.get("by", "")) == "" or is_word(by):
-                return str(by)
-    return None
-
-
-def _said(line: bytes) -> Said | None:
-    """Return the message in a line, None if there is none."""
+def _said(line: bytes) -> Said | str | None:
+    """Return the message in a line, or the operator who starts the run by it; None if there is none."""
     with suppress(PhysicalError):
         match read_json(line, MOST_BYTES):
             case {**said} if (by := said.get("by", "")) == "" or is_word(by):
@@ -152,8 +143,10 @@ def _said(line: bytes) -> Said | None:
     return None
 
 
-def _said_by(said: Mapping[object, object], by: str) -> Said | None:
+def _said_by(said: Mapping[object, object], by: str) -> Said | str | None:
     match said:
+        case {"start": True}:
+            return by
         case {"agent": str(agent), "message": str(message)} if is_text(agent) and is_text(message):
             return Saying(agent, message, by)
         case {"give_back": str(vehicle)} if is_text(vehicle) and is_text(at := said.get("at", "")):

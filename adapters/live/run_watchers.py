@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import Protocol
 
 from adapters.live.batch import Heard
 from adapters.live.turn_result import Turn
@@ -13,8 +12,11 @@ SHOWN_RULES = frozenset({"env", "say", "command", "commit", "actuate", "migrate"
 """The rules whose steps are shown to the operator; the recording has the others too."""
 
 
-class Watcher(Protocol):
-    """A watcher: a terminal, a recording, a test. Called in the loop's thread, in this order for each turn."""
+class Watcher:
+    """A watcher: a terminal, a recording, a test. Called in the loop's thread, in this order for each turn.
+
+    One that leaves a method as it is here looks at nothing of that.
+    """
 
     def arrived(self, heard: Heard, now: float) -> None:
         """Receive a publication."""

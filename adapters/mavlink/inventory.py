@@ -7,11 +7,10 @@ from typing import Final, Protocol, TypeVar
 
 from adapters.mavlink import item_polling as surveys
 from adapters.mavlink.constants import MissionType
-from adapters.mavlink.fast_replace import changed
 from adapters.mavlink.item_merging import OnBoard, Unconfirmed, before_upload
 from adapters.mavlink.item_polling import Survey, changed_by
 from adapters.mavlink.items import Items
-from adapters.mavlink.message import MavlinkMessage
+from adapters.mavlink.message import MavlinkMessage, changed
 from adapters.mavlink.next_step import Load, Step
 from adapters.mavlink.refuges import beyond_fence
 from adapters.mavlink.task import Task
@@ -27,37 +26,30 @@ class Believer(Protocol):
     @property
     def craft(self) -> Craft:
         """The vehicle's description."""
-        ...
 
     @property
     def system(self) -> int:
         """Its system id."""
-        ...
 
     @property
     def known(self) -> Telemetry:
         """Its state."""
-        ...
 
     @property
     def on_board(self) -> OnBoard:
         """The items believed to be on board."""
-        ...
 
     @property
     def uploads(self) -> Mapping[MissionType, Unconfirmed]:
         """The uploads that were begun and are not confirmed."""
-        ...
 
     @property
     def survey(self) -> Survey:
         """The reading of it."""
-        ...
 
     @property
     def moving(self) -> Task | None:
         """The command that it carries out."""
-        ...
 
 
 Pilot = TypeVar("Pilot", bound=Believer)

@@ -38,10 +38,9 @@ from adapters.plugin import (
     StatusText,
     World,
 )
-from adapters.rate_limit import Ration
+from adapters.rate_limit import Ration, Troubles
 from adapters.silence_clock import Listening
 from adapters.transport import Port, Remote, open_port
-from adapters.trouble_throttle import Troubles
 from physical import Geometry, PhysicalError, Surroundings
 
 TICK: Final = 0.2

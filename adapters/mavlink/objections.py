@@ -1,4 +1,4 @@
-"""Reasons why a vehicle cannot carry out a command, known before any message is sent."""
+"""Reasons why a vehicle cannot carry out a command, known before any message is sent; and remarks on its items."""
 
 from __future__ import annotations
 
@@ -7,9 +7,10 @@ from itertools import chain, pairwise, product
 from types import MappingProxyType
 from typing import Final
 
-from adapters.mavlink.constants import MissionType
-from adapters.mavlink.item_merging import OnBoard, is_cut, jumps_out, merged
-from adapters.mavlink.items import route
+from adapters.mavlink.constants import Cmd, MissionType
+from adapters.mavlink.item_merging import RETURNS_BY_LANDING, OnBoard, is_cut, jumps_out, landing, merged
+from adapters.mavlink.items import Items, route
+from adapters.mavlink.items import fence as polygon_items
 from adapters.mavlink.loiter_circle import cramped, goal, home_circle, room, stay
 from adapters.mavlink.next_step import height_of
 from adapters.mavlink.onboard_fences import (
@@ -22,10 +23,10 @@ from adapters.mavlink.onboard_fences import (
     zones_beside,
 )
 from adapters.mavlink.profiles import Profile, TakeOff
-from adapters.mavlink.refuges import beyond_fence, missing_items
-from adapters.mavlink.remarks import remarks_on_board
+from adapters.mavlink.refuges import beyond_fence, missing_items, rally_points
 from adapters.mavlink.telemetry import Telemetry
 from adapters.mavlink.vehicle_identities import Craft, Stations
+from adapters.mavlink.zones import zones
 from adapters.plugin import Command, Follow, GoTo, HandOver
 from physical import Geometry, circle, contains, point, waypoint
 
@@ -270,3 +271,45 @@ def holds_circle(place: Geometry, radius: float) -> bool:
 def _around(at: Geometry, radius: float) -> Geometry:
     ((latitude, longitude),) = at.vertices
     return circle((latitude, longitude), radius)
+
+
+_OURS = (Cmd.WAYPOINT, Cmd.LOITER_UNLIMITED, Cmd.TAKEOFF)
+
+
+def remarks_on_board(
+    craft: Craft, known: Telemetry, on_board: OnBoard, unread: Collection[MissionType]
+) -> Iterator[str]:
+    """Yield remarks on the items on board a vehicle; `unread` kinds could not be read."""
+    missing = [kind.name.lower() for kind in unread if kind not in on_board]
+    if missing:
+        yield f"does not report its contents on board: {', '.join(missing)}"
+    yield from _of_mission(on_board.get(MissionType.MISSION, ()), known)
+    yield from _of_kept_zones(craft, known, on_board)
+    rally = rally_points(on_board)
+    if rally:
+        yield f"has rally points on board, {len(rally)}: it returns to the nearest, not to its home"
+
+
+def _of_mission(found: Items, known: Telemetry) -> Iterator[str]:
+    kept = landing(found, known)
+    first = known.profile is not None and known.profile.dialect.home_is_item
+    rest = found[int(first) : len(found) - len(kept)]
+    if any(item.command not in _OURS for item in rest):
+        yield f"has a mission of {len(found) - int(first)} items on board, which the flights of this mission replace"
+    if kept:
+        yield f"keeps its landing sequence: each upload ends with the last {len(kept)} items of the mission on board"
+    if known.parameters.get("RTL_AUTOLAND") in RETURNS_BY_LANDING and not kept:
+        yield "has no landing sequence on board, which its RTL_AUTOLAND needs: when it returns, it circles"
+
+
+def _of_kept_zones(craft: Craft, known: Telemetry, on_board: OnBoard) -> Iterator[str]:
+    found = zones(on_board.get(MissionType.FENCE, ()))
+    kept = zones_beside(craft.fence, known, on_board)
+    for zone in kept:
+        yield f"keeps {zone}, too: it is on board"
+    if craft.fence is None:
+        return
+    own = {zone.key for zone in zones(polygon_items(craft.fence))}
+    for zone in found:
+        if zone not in kept and zone.key not in own:
+            yield f"loses {zone}, which is on board: the fence of the mission replaces it"

@@ -15,12 +15,11 @@ from adapters.mavlink import item_polling as surveys
 from adapters.mavlink import task as tasks
 from adapters.mavlink.command import long, read_parameter
 from adapters.mavlink.constants import AUTHORITY_PARAMETERS, AUTOPILOT_VERSION, REGULAR, Cmd, MissionType
-from adapters.mavlink.fast_replace import changed
 from adapters.mavlink.item_merging import OnBoard, Unconfirmed
 from adapters.mavlink.item_polling import Survey
 from adapters.mavlink.link_loss import LinkState, watch
 from adapters.mavlink.loiter_circle import circle, home_circle, room
-from adapters.mavlink.message import MavlinkMessage
+from adapters.mavlink.message import MavlinkMessage, changed
 from adapters.mavlink.objections import not_ours, objection
 from adapters.mavlink.profiles import Profile, TakeOff, unknown_kind
 from adapters.mavlink.streams import Streams

@@ -28,8 +28,7 @@ from adapters.mavlink.constants import (
     ModeFlag,
     Result,
 )
-from adapters.mavlink.fast_replace import changed
-from adapters.mavlink.message import MavlinkMessage
+from adapters.mavlink.message import MavlinkMessage, changed
 from adapters.mavlink.profiles import Profile, profile_of
 from adapters.mavlink.texts import Chunks, Joined, VehicleText, give_up, join
 from adapters.mavlink.vehicle_identities import Craft

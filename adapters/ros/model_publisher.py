@@ -9,15 +9,13 @@ import threading
 from collections.abc import Iterator
 from typing import Final
 
-from adapters.live.batch import Heard
 from adapters.live.fresh_placements import Sighting
 from adapters.live.live_state import LiveState
+from adapters.live.run_watchers import Watcher
 from adapters.live.turn_result import Turn
-from adapters.plugin import Report
 from adapters.ros.position_messages import FIX, STRING, WHERE, hash_of, write_fix, write_string, write_where
-from adapters.ros.publisher import Publisher
 from adapters.ros.ros_node import open_session, read_address
-from adapters.ros.wire import Topic, node_token
+from adapters.ros.wire import Publisher, Topic, node_token
 from physical import PhysicalError, centroid
 from semantics.state.logical_model import LogicalModel
 
@@ -32,7 +30,7 @@ NAME: Final = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 TopicMessage = tuple[Topic, bytes]
 
 
-class RosSending:
+class RosSending(Watcher):
     """A watcher that publishes the positions of entities, and L when it changes.
 
     The run only leaves its newest state here; a thread sends the messages, and only the newest of each topic waits.
@@ -60,12 +58,6 @@ class RosSending:
         self._failure: Exception | None = None
         self._thread = threading.Thread(target=self._send, daemon=True)
         self._thread.start()
-
-    def arrived(self, heard: Heard, now: float) -> None:
-        """Do nothing: P is published, not the arrivals."""
-
-    def reported(self, report: Report, now: float) -> None:
-        """Do nothing."""
 
     def turned(self, turn: Turn, now: float) -> None:  # noqa: ARG002 - as watchers are called
         """Keep the newest state, which is published soon; raises PhysicalError if sending has failed."""

@@ -12,9 +12,9 @@ from typing import Any, Final
 
 from adapters.addresses import Address, parse_address
 from adapters.plugin import World
+from adapters.rate_limit import Troubles
 from adapters.ros.position_messages import MOST_BYTES, RosPosition, hash_of, read_position
 from adapters.ros.wire import UNHASHED, Topic, node_token, topic_of
-from adapters.trouble_throttle import Troubles
 from physical import PhysicalError
 from physical.wordings import install_extra
 

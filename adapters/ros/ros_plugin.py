@@ -13,10 +13,10 @@ from typing import Any
 from adapters.listening_plugin import Feed
 from adapters.naming import NamingService
 from adapters.plugin import Aged, World
+from adapters.rate_limit import Troubles
 from adapters.ros.position_messages import TYPES, hash_of, typestore
 from adapters.ros.ros_node import REPORT, RouterLink, read_address, read_at
 from adapters.ros.wire import NODE, Topic, all_of
-from adapters.trouble_throttle import Troubles
 from physical import PhysicalError, PhysicalProperty
 
 

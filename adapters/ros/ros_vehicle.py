@@ -32,6 +32,7 @@ from adapters.plugin import (
     Status,
     World,
 )
+from adapters.rate_limit import Troubles
 from adapters.ros.errand import Errand, moved, seen, waypoints
 from adapters.ros.position_messages import (
     EMPTY,
@@ -46,10 +47,8 @@ from adapters.ros.position_messages import (
     write_goal,
     write_path,
 )
-from adapters.ros.publisher import Publisher
 from adapters.ros.ros_node import REPORT, RouterLink, read_at, read_options
-from adapters.ros.wire import NODE, UNHASHED, Topic, attachment, gid_of, key_of, subscriptions_of
-from adapters.trouble_throttle import Troubles
+from adapters.ros.wire import NODE, UNHASHED, Publisher, Topic, attachment, gid_of, key_of, subscriptions_of
 from physical import Geometry, PhysicalError, PhysicalProperty, circle, contains, point
 
 STAYS: Final = 10.0

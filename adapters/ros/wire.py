@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import struct
+import time
 from dataclasses import dataclass
-from typing import Final
+from typing import Any, Final
 
 from physical import PhysicalError
 
@@ -101,3 +102,26 @@ def attachment(number: int, nanoseconds: int, gid: bytes) -> bytes:
 def _dds(type_name: str) -> str:
     package, kind, name = type_name.split("/")
     return f"{package}::{kind}::dds_::{name}_"
+
+
+class Publisher:
+    """A ROS publisher: reliable; keeps its last message, for late subscribers too if it lasts."""
+
+    def __init__(self, session: Any, domain: int, topic: Topic, number: int, *, lasts: bool) -> None:
+        import zenoh.ext  # noqa: PLC0415 - an extra
+
+        token = publisher_token(domain, str(session.zid()), number, topic, lasts=lasts)
+        self._puts = zenoh.ext.declare_advanced_publisher(
+            session,
+            key_of(domain, topic),
+            cache=zenoh.ext.CacheConfig(1) if lasts else None,
+            publisher_detection=lasts,
+        )
+        self._token = session.liveliness().declare_token(token)
+        self._gid = gid_of(token)
+        self._number = 0
+
+    def put(self, raw: bytes) -> None:
+        """Publish a message."""
+        self._number += 1
+        self._puts.put(raw, attachment=attachment(self._number, time.time_ns(), self._gid))

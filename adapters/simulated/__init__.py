@@ -5,8 +5,7 @@ link with a `disturbance`, and `clock` runs everything faster than real time.
 """
 
 from adapters.simulated.clock import run
-from adapters.simulated.link_impairment import Disturbance
-from adapters.simulated.serving import Simulator
+from adapters.simulated.serving import Disturbance, Simulator
 from adapters.simulated.simulated_vehicle import Vehicle
 from adapters.simulated.vehicle_state import Kind
 

@@ -7,8 +7,7 @@ from pathlib import Path
 
 from adapters.mavlink.signing import Signing, load
 from adapters.simulated.clock import run
-from adapters.simulated.link_impairment import Disturbance
-from adapters.simulated.serving import Simulator
+from adapters.simulated.serving import Disturbance, Simulator
 from adapters.simulated.simulated_vehicle import Vehicle
 from adapters.simulated.vehicle_state import Kind
 

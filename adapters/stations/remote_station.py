@@ -3,14 +3,57 @@
 from __future__ import annotations
 
 import asyncio
+from collections import deque
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
+from hashlib import sha256
 from typing import Final
 
 from adapters.plugin import Presence
 from adapters.stations.entries import Posted
-from adapters.stations.skew import Skew
 from adapters.stations.station_messages import StationMessage
+from semantics.state.logical_model import LogicalModel
+
+KEPT: Final = 8
+"""The number of remembered round trips; the shortest is the most exact."""
+
+
+@dataclass(frozen=True, slots=True)
+class Measure:
+    """Seconds by which a clock is ahead of ours, and the error bound."""
+
+    ahead: float
+    error: float
+
+    def exceeds(self, bound: float) -> bool:
+        """Return whether the clock is off by more than a bound, for any error within the error bound."""
+        return abs(self.ahead) - self.error > bound
+
+
+def measured(sent: float, theirs: float, received: float) -> Measure:
+    """Measure by one round trip: the answer was written at some time in between.
+
+    >>> measured(10.0, 13.5, 11.0)
+    Measure(ahead=3.0, error=0.5)
+    """
+    return Measure(theirs - (sent + received) / 2, (received - sent) / 2)
+
+
+@dataclass(slots=True)
+class Skew:
+    """The last measures of one clock."""
+
+    measures: deque[Measure] = field(default_factory=lambda: deque(maxlen=KEPT))
+
+    def add(self, measure: Measure) -> None:
+        """Remember a measure."""
+        self.measures.append(measure)
+
+    @property
+    def best(self) -> Measure | None:
+        """The most exact of them."""
+        return min(self.measures, key=lambda measure: measure.error, default=None)
+
 
 SETTLED: Final = 5.0
 """Seconds for which two different digests of L must stay the same before the stations are said to differ."""
@@ -110,3 +153,9 @@ class Other:
 def _is_known(others: Mapping[str, Other], station: str, number: int) -> bool:
     other = others.get(station)
     return other is None or other.reached is False or other.heard >= number
+
+
+def logical_digest(logical: LogicalModel) -> str:
+    """Return a digest of the nodes of L with their parents and links; it is the same in each process."""
+    nodes = [(name, logical.parent(name), sorted(logical.links(name))) for name in sorted(logical.nodes())]
+    return sha256(repr(nodes).encode()).hexdigest()[:32]

@@ -16,8 +16,8 @@ from typing import Any, Final
 from msgspec import UNSET, Raw
 from msgspec.json import encode
 
-from adapters.live.batch import Heard
 from adapters.live.fresh_placements import MOST_AHEAD
+from adapters.live.run_watchers import Watcher
 from adapters.live.turn_result import Turn
 from adapters.plugin import (
     Believes,
@@ -31,12 +31,12 @@ from adapters.plugin import (
     Plugin,
     Published,
     Refused,
-    Report,
     Trouble,
     Underway,
     World,
     entity_of,
 )
+from adapters.rate_limit import Troubles
 from adapters.silence_clock import Listening
 from adapters.stations.authority import Authority, is_silent
 from adapters.stations.bus import Bus
@@ -54,13 +54,11 @@ from adapters.stations.entries import (
     stamped,
 )
 from adapters.stations.journal import Journal
-from adapters.stations.logical_digest import logical_digest
 from adapters.stations.merge import ABREAST, MOST_ENTITIES, Merge, channels_of, on
 from adapters.stations.outgoing import believed, entered, moved, told
 from adapters.stations.peers import Peers
-from adapters.stations.remote_station import SETTLED, Other
+from adapters.stations.remote_station import SETTLED, Other, logical_digest, measured
 from adapters.stations.shared_plugin import Shared
-from adapters.stations.skew import measured
 from adapters.stations.station_messages import (
     MOST_BYTES,
     MOST_ENTRIES,
@@ -69,7 +67,6 @@ from adapters.stations.station_messages import (
     fitting,
     read,
 )
-from adapters.trouble_throttle import Troubles
 from adapters.typed_json import read_typed
 from physical import PhysicalError
 from semantics.state.logical_model import LogicalModel
@@ -100,7 +97,7 @@ MOST_PARCELS: Final = 10_000
 """The most waiting parcels of one station; more are requested later."""
 
 
-class Sharing:
+class Sharing(Watcher):
     """The plugin of one station; it also watches the run.
 
     Arguments:
@@ -181,12 +178,6 @@ class Sharing:
         return Shared(plugin, self)
 
     # --- as a watcher
-
-    def arrived(self, heard: Heard, now: float) -> None:
-        """Ignore a publication."""
-
-    def reported(self, report: Report, now: float) -> None:
-        """Ignore a plugin's report."""
 
     def turned(self, turn: Turn, now: float) -> None:
         """Share a turn's entries for the others; the recording has the turn already."""

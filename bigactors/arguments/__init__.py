@@ -5,13 +5,14 @@ It loads the module of the command that the line names, and nothing slow: help a
 
 import argparse
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from typing import Final
 
 from bigactors import __version__
 from bigactors.arguments.options import EXITS
 from bigactors.arguments.parser import Parser, command_of
+from bigactors.arguments.sheets import add_arguments
 from bigactors.commands import GROUPS, NAMES
 from bigactors.mistakes import Mistake, suggestion
 
@@ -71,8 +72,26 @@ def parser_of(name: str, make: Callable[..., Parser] = Parser) -> Parser:
     command = command_of(name)
     shown = "examples:\n" + "\n".join(f"  {example}" for example in command.EXAMPLES)
     parser = make(prog=f"bigactors {name}", description=command.DESCRIPTION, epilog=shown)
-    command.add_arguments(parser)
+    if isinstance(command.ARGUMENTS, str):
+        add_arguments(parser, command.ARGUMENTS)
+    else:
+        _add_tasks(parser, command.ARGUMENTS)
     return parser
+
+
+def _add_tasks(parser: Parser, sheets: Mapping[str, tuple[str, str]]) -> None:
+    """Add the tasks of a command, each with its purpose and the sheet of its arguments."""
+    tasks = parser.add_subparsers(
+        dest="task",
+        metavar="TASK",
+        title="tasks",
+        prog=parser.prog,  # without it, argparse builds a help formatter
+        parser_class=type(parser),
+        required=True,
+    )
+    for name, (purpose, sheet) in sheets.items():
+        task = tasks.add_parser(name, help=purpose, description=f"{purpose[0].upper()}{purpose[1:]}.")
+        add_arguments(task, sheet)
 
 
 def parse_arguments(line: Sequence[str]) -> argparse.Namespace:

@@ -3,7 +3,7 @@
 import argparse
 import re
 import textwrap
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from importlib import import_module
 from typing import NoReturn, Protocol, cast, runtime_checkable
 
@@ -76,13 +76,12 @@ class Command(Protocol):
     Attributes:
         DESCRIPTION: Its purpose, for its help.
         EXAMPLES: Example command lines, for its help.
+        ARGUMENTS: The sheet of its arguments (`sheets`); or its tasks, each with its purpose and its sheet.
     """
 
     DESCRIPTION: str
     EXAMPLES: tuple[str, ...]
-
-    def add_arguments(self, parser: Parser) -> None:
-        """Add its arguments and options."""
+    ARGUMENTS: str | Mapping[str, tuple[str, str]]
 
     def run(self, options: argparse.Namespace) -> Exit:
         """Do its work, and return the exit code."""

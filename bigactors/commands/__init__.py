@@ -3,7 +3,7 @@
 The module of a command holds its help, its arguments and its work:
 
 - `DESCRIPTION` and `EXAMPLES`, the help;
-- `add_arguments(parser)`, its arguments and options;
+- `ARGUMENTS`, the sheet of its arguments and options (`bigactors.arguments.sheets`);
 - `run(options)`, its work, which returns the exit code.
 
 Importing it loads nothing slow, so that help and completion appear at once: the work imports its libraries itself.

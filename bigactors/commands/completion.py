@@ -9,7 +9,6 @@ from pathlib import Path
 from typing import Any, Final
 
 from bigactors.arguments import make_parser
-from bigactors.arguments.parser import Parser
 from bigactors.arguments.values import FORMATS, REDUCTIONS
 from bigactors.exits import Exit
 from bigactors.terminal import say_text
@@ -24,13 +23,11 @@ EXAMPLES: Final = (
     'eval "$(bigactors completion zsh)"',
 )
 
+ARGUMENTS: Final = """\
+  shell {bash,zsh,fish}  the shell that reads the script"""
+
 
 SHELLS = ("bash", "zsh", "fish")
-
-
-def add_arguments(parser: Parser) -> None:
-    """Add the arguments of `bigactors completion`."""
-    parser.add_argument("shell", choices=SHELLS, help="the shell that reads the script")
 
 
 def run(options: Namespace) -> Exit:

@@ -4,8 +4,6 @@ from argparse import Namespace
 from pathlib import Path
 from typing import Final
 
-from bigactors.arguments.parser import Parser
-from bigactors.arguments.values import named
 from bigactors.exits import Exit, worst
 from bigactors.terminal import say
 
@@ -16,21 +14,9 @@ operator's console: open the link that it prints."""
 
 EXAMPLES: Final = ("bigactors demo --out demo", "bigactors demo --console")
 
-
-def add_arguments(parser: Parser) -> None:
-    """Add the arguments of `bigactors demo`."""
-    parser.add_argument(
-        "--out",
-        metavar="DIR",
-        type=named,
-        default="demo",
-        help="the folder for pictures and traces (default: demo)",
-    )
-    parser.add_argument(
-        "--console",
-        action="store_true",
-        help="fly a mission with a simulated plane instead, ten times as fast as the clock, with the console",
-    )
+ARGUMENTS: Final = """\
+  --out DIR = demo  the folder for pictures and traces
+  --console  fly a mission with a simulated plane instead, ten times as fast as the clock, with the console"""
 
 
 MISSIONS = ("oil_spill", "harbour_watch")

@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-import argparse
 from argparse import Namespace
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
-from bigactors.arguments.parser import Parser
-from bigactors.arguments.values import named, seconds
 from bigactors.exits import Exit
 from bigactors.mistakes import Mistake, unreadable
 from bigactors.terminal import say, tell
@@ -31,92 +28,25 @@ EXAMPLES: Final = (
     "bigactors detect sentinel.tif --output spill.geojson",
 )
 
-
-def add_arguments(parser: Parser) -> None:
-    """Add the arguments of `bigactors detect`."""
-    parser.add_argument("source", metavar="SOURCE", type=named, help="a folder, a video or a GeoTIFF")
-    parser.add_argument(
-        "--fov",
-        metavar="DEGREES",
-        type=degrees,
-        default=60.0,
-        help="the horizontal field of view (default: 60)",
-    )
-    parser.add_argument(
-        "--mount",
-        metavar="PITCH[,YAW[,ROLL]]",
-        type=mount,
-        default=(-90.0, 0.0, 0.0),
-        help="the camera's angles to the vehicle, in degrees: -90 (default) looks down, --mount=-60 looks 30° "
-        "forward of that",
-    )
-    parser.add_argument(
-        "--level",
-        action="store_true",
-        help="ignore the vehicle's roll and pitch: a gimbal holds the camera level",
-    )
-    parser.add_argument(
-        "--every",
-        metavar="SECONDS",
-        type=seconds,
-        default=1.0,
-        help="the time between two frames of a video (default: 1)",
-    )
-    parser.add_argument(
-        "--detector",
-        metavar="NAME",
-        type=named,
-        help="a function as MODULE:NAME, or the name of an installed detector (default: the detector of slicks)",
-    )
-    _add_results(parser)
-
-
-def _add_results(parser: Parser) -> None:
-    parser.add_argument("--kind", default="OilSpill", help="the kind of the regions (default: OilSpill)")
-    parser.add_argument(
-        "--name", default="oilSpill", help="the name of the regions, before a number (default: oilSpill)"
-    )
-    parser.add_argument(
-        "--output", metavar="FILE", type=named, help="write the polygons as GeoJSON (RFC 7946)"
-    )
-    parser.add_argument(
-        "--pictures",
-        metavar="FOLDER",
-        type=named,
-        help="draw the regions over each frame, as PNG, into this folder",
-    )
-
-
-def degrees(text: str) -> float:
-    """Parse an angle in degrees.
-
-    >>> degrees("62.5")
-    62.5
-    """
-    try:
-        return float(text)
-    except ValueError:
-        raise argparse.ArgumentTypeError(f"'{text:.40}' is no angle in degrees") from None
-
-
-def mount(text: str) -> tuple[float, float, float]:
-    """Parse PITCH[,YAW[,ROLL]] in degrees.
-
-    >>> mount("-60"), mount("-45,90")
-    ((-60.0, 0.0, 0.0), (-45.0, 90.0, 0.0))
-    """
-    given = [degrees(part) for part in text.split(",")]
-    if len(given) > 3:
-        raise argparse.ArgumentTypeError(f"'{text:.40}' is not PITCH[,YAW[,ROLL]], such as -60,0,0")
-    pitch, yaw, roll = (*given, 0.0, 0.0)[:3]
-    return pitch, yaw, roll
+ARGUMENTS: Final = """\
+  source SOURCE as named  a folder, a video or a GeoTIFF
+  --fov DEGREES = 60  the horizontal field of view
+  --mount PITCH[,YAW[,ROLL]] = -90  the camera's angles to the vehicle, in degrees: -90 (default) looks down,
+      --mount=-60 looks 30° forward of that
+  --level  ignore the vehicle's roll and pitch: a gimbal holds the camera level
+  --every SECONDS = 1  the time between two frames of a video
+  --detector NAME as named  a function as MODULE:NAME, or the name of an installed detector (default: the detector
+      of slicks)
+  --kind KIND = OilSpill  the kind of the regions
+  --name NAME = oilSpill  the name of the regions, before a number
+  --output FILE  write the polygons as GeoJSON (RFC 7946)
+  --pictures FOLDER  draw the regions over each frame, as PNG, into this folder"""
 
 
 def run(options: Namespace) -> Exit:
     """Print the regions found in the frames, and the number of unusable frames by reason."""
     from adapters.camera.frames import frames_of
-    from adapters.camera.overlay import draw_patches
-    from adapters.camera.region_detection import properties, sightings
+    from adapters.camera.region_detection import draw_patches, properties, sightings
     from adapters.camera.sea_projection import Lens
     from adapters.camera.slick import find_slicks
     from adapters.naming import NamingService

@@ -3,7 +3,6 @@
 from argparse import Namespace
 from typing import Final
 
-from bigactors.arguments.parser import Parser
 from bigactors.exits import Exit
 from bigactors.mistakes import Mistake
 from bigactors.terminal import say
@@ -18,15 +17,8 @@ EXAMPLES: Final = (
     "bigactors explain",
 )
 
-
-def add_arguments(parser: Parser) -> None:
-    """Add the arguments of `bigactors explain`."""
-    parser.add_argument(
-        "code",
-        nargs="*",
-        metavar="CODE",
-        help="codes such as LS201, or a word of a report such as stale-observation (default: list all)",
-    )
+ARGUMENTS: Final = """\
+  code [CODE...]  codes such as LS201, or a word of a report such as stale-observation (default: list all)"""
 
 
 def run(options: Namespace) -> Exit:

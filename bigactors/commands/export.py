@@ -5,9 +5,7 @@ from __future__ import annotations
 from argparse import Namespace
 from typing import TYPE_CHECKING, Final
 
-from bigactors.arguments.options import MISSION, add_variation
-from bigactors.arguments.parser import Parser
-from bigactors.arguments.values import named
+from bigactors.arguments.options import MISSION, VARIATION
 from bigactors.exits import Exit
 from bigactors.mistakes import Mistake, suggestion
 from bigactors.terminal import say_text, tell
@@ -29,27 +27,13 @@ EXAMPLES: Final = (
     "bigactors export broken_endurance --format uppaal --property endurance --out broken_endurance.xml",
 )
 
+ARGUMENTS: Final = f"""\
+  file FILE  {MISSION}
+  required --format {{tchecker,uppaal}}  the language of the automaton
+  --property NAME as named  observe this property: the name of a deadline, or `endurance` (default: none)
+  --out FILE = -  the file that is written (default: -, standard output)
 
-def add_arguments(parser: Parser) -> None:
-    """Add the arguments of `bigactors export`."""
-    parser.add_argument("file", metavar="FILE", help=MISSION)
-    parser.add_argument(
-        "--format", choices=("tchecker", "uppaal"), required=True, help="the language of the automaton"
-    )
-    parser.add_argument(
-        "--property",
-        metavar="NAME",
-        type=named,
-        help="observe this property: the name of a deadline, or `endurance` (default: none)",
-    )
-    parser.add_argument(
-        "--out",
-        metavar="FILE",
-        type=named,
-        default="-",
-        help="the file that is written (default: -, standard output)",
-    )
-    add_variation(parser)
+{VARIATION}"""
 
 
 def run(options: Namespace) -> Exit:

@@ -3,7 +3,6 @@
 from argparse import Namespace
 from typing import Final
 
-from bigactors.arguments.parser import Parser
 from bigactors.exits import Exit, worst
 from bigactors.mistakes import Mistake
 from bigactors.terminal import say, say_text, tell
@@ -13,13 +12,12 @@ Rewrite mission files in the canonical layout, with their comments. A file with 
 
 EXAMPLES: Final = ("bigactors fmt oil_spill.mission", "bigactors fmt --check specs/missions/*.mission")
 
+ARGUMENTS: Final = """\
+  files FILE...  a mission file
 
-def add_arguments(parser: Parser) -> None:
-    """Add the arguments of `bigactors fmt`."""
-    parser.add_argument("files", nargs="+", metavar="FILE", help="a mission file")
-    way = parser.add_mutually_exclusive_group()
-    way.add_argument("--check", action="store_true", help="write nothing; exit code 1 if a file would change")
-    way.add_argument("--stdout", action="store_true", help="print the formatted text instead of writing it")
+at most one of
+  --check  write nothing; exit code 1 if a file would change
+  --stdout  print the formatted text instead of writing it"""
 
 
 def run(options: Namespace) -> Exit:

@@ -3,9 +3,7 @@
 from argparse import Namespace
 from typing import Final
 
-from bigactors.arguments.options import add_socket, add_speaker
-from bigactors.arguments.parser import Parser
-from bigactors.arguments.values import named
+from bigactors.arguments.options import SOCKET, SPEAKER
 from bigactors.exits import Exit
 from bigactors.mistakes import Mistake
 from bigactors.terminal import say, tell
@@ -20,29 +18,22 @@ given back without --at."""
 
 EXAMPLES: Final = ("bigactors give-back uav0", "bigactors give-back uav0 --at 192.168.1.7:14555")
 
-
-def add_arguments(parser: Parser) -> None:
-    """Add the arguments of `bigactors give-back`."""
-    parser.add_argument("vehicle", metavar="VEHICLE", help="a vehicle of the running mission")
-    parser.add_argument(
-        "--at",
-        metavar="HOST:PORT",
-        type=named,
-        help="accept the vehicle at this address from now on, instead of its silent old one, and do not command "
-        "it again",
-    )
-    add_speaker(parser)
-    add_socket(parser)
+ARGUMENTS: Final = f"""\
+  vehicle VEHICLE  a vehicle of the running mission
+  --at HOST:PORT  accept the vehicle at this address from now on, instead of its silent old one, and do not command
+      it again
+{SPEAKER}
+{SOCKET}"""
 
 
 def run(options: Namespace) -> Exit:
     """Give the vehicle back, and print the answer."""
     from adapters.live.operator_socket import give_back
-    from bigactors.sockets import check_texts, heard_at
+    from bigactors.sockets import check_texts, heard_at, speaker
 
-    vehicle, at = options.vehicle, options.at or ""
-    check_texts("a vehicle or an address", vehicle, options.by, at)
-    refusal, _, notes = heard_at(options.socket, lambda path: give_back(path, vehicle, at, options.by))
+    vehicle, at, by = options.vehicle, options.at or "", speaker(options.by)
+    check_texts("a vehicle or an address", vehicle, by, at)
+    refusal, _, notes = heard_at(options.socket, lambda path: give_back(path, vehicle, at, by))
     if refusal:
         raise Mistake(refusal, "`bigactors status` lists the vehicles that were taken over, or are silent")
     for note in notes:

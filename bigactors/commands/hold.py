@@ -7,8 +7,7 @@ from argparse import Namespace
 from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING, Final
 
-from bigactors.arguments.options import add_socket, add_speaker
-from bigactors.arguments.parser import Parser
+from bigactors.arguments.options import SOCKET, SPEAKER
 from bigactors.exits import Exit
 from bigactors.mistakes import Mistake
 from bigactors.terminal import say, tell
@@ -28,18 +27,13 @@ is repeated until the vehicle obeys, and the run then prints a line."""
 
 EXAMPLES: Final = ("bigactors hold uav0", "bigactors hold --all --by Ana")
 
+ARGUMENTS: Final = f"""\
+exactly one of
+  vehicle [VEHICLE]  a vehicle of the running mission
+  --all  every vehicle of this station, except those that others have taken over
 
-def add_arguments(parser: Parser) -> None:
-    """Add the arguments of `bigactors hold`, and of `return`."""
-    which = parser.add_mutually_exclusive_group(required=True)
-    which.add_argument("vehicle", metavar="VEHICLE", nargs="?", help="a vehicle of the running mission")
-    which.add_argument(
-        "--all",
-        action="store_true",
-        help="every vehicle of this station, except those that others have taken over",
-    )
-    add_speaker(parser)
-    add_socket(parser)
+{SPEAKER}
+{SOCKET}"""
 
 
 WAIT = 10.0
@@ -52,11 +46,11 @@ LOOK = 0.25
 def run(options: Namespace) -> Exit:
     """Give the order, and print its outcome; also runs `return`."""
     from adapters.live.operator_socket import order
-    from bigactors.sockets import check_texts, heard_at
+    from bigactors.sockets import check_texts, heard_at, speaker
 
-    what, vehicle = options.command, options.vehicle
-    check_texts("a vehicle", vehicle or "", options.by)
-    refusal, left_out, notes = heard_at(options.socket, lambda path: order(path, what, vehicle, options.by))
+    what, vehicle, by = options.command, options.vehicle, speaker(options.by)
+    check_texts("a vehicle", vehicle or "", by)
+    refusal, left_out, notes = heard_at(options.socket, lambda path: order(path, what, vehicle, by))
     if refusal:
         raise Mistake(refusal, "`bigactors status` prints the state of the run")
     for note in (*left_out.values(), *notes):

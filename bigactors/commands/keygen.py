@@ -4,8 +4,6 @@ from argparse import Namespace
 from pathlib import Path
 from typing import Final
 
-from bigactors.arguments.parser import Parser
-from bigactors.arguments.values import named
 from bigactors.exits import Exit
 from bigactors.terminal import say
 
@@ -19,15 +17,8 @@ EXAMPLES: Final = (
     "bigactors run m.mission --trust release.key.pub --vehicle uav0=udp:127.0.0.1:14550",
 )
 
-
-def add_arguments(parser: Parser) -> None:
-    """Add the arguments of `bigactors keygen`."""
-    parser.add_argument(
-        "file",
-        metavar="FILE",
-        type=named,
-        help="the file of the private key; the public key goes into FILE.pub",
-    )
+ARGUMENTS: Final = """\
+  file FILE as named  the file of the private key; the public key goes into FILE.pub"""
 
 
 def run(options: Namespace) -> Exit:

@@ -6,7 +6,6 @@ import sys
 from argparse import Namespace
 from typing import Final
 
-from bigactors.arguments.parser import Parser
 from bigactors.exits import Exit
 from bigactors.mistakes import Mistake
 
@@ -16,12 +15,8 @@ docs/how-to/editors.md shows the configuration of editors."""
 
 EXAMPLES: Final = ("bigactors lsp",)
 
-
-def add_arguments(parser: Parser) -> None:
-    """Add the arguments of `bigactors lsp`."""
-    parser.add_argument(
-        "--stdio", action="store_true", help="use standard input and output (the default, and the only way)"
-    )
+ARGUMENTS: Final = """\
+  --stdio  use standard input and output (the default, and the only way)"""
 
 
 def run(options: Namespace) -> Exit:

@@ -5,8 +5,6 @@ from argparse import Namespace
 from pathlib import Path
 from typing import Final
 
-from bigactors.arguments.parser import Parser
-from bigactors.arguments.values import named
 from bigactors.exits import Exit
 from bigactors.mistakes import Mistake, unreadable
 from bigactors.terminal import say
@@ -21,15 +19,8 @@ EXAMPLES: Final = (
     "bigactors check --watch patrol.mission",
 )
 
-
-def add_arguments(parser: Parser) -> None:
-    """Add the arguments of `bigactors new`."""
-    parser.add_argument(
-        "name",
-        metavar="NAME",
-        type=named,
-        help="the mission's name, or the path of its file, with or without .mission",
-    )
+ARGUMENTS: Final = """\
+  name NAME as named  the mission's name, or the path of its file, with or without .mission"""
 
 
 def run(options: Namespace) -> Exit:

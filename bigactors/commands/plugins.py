@@ -6,7 +6,6 @@ from argparse import Namespace
 from typing import TYPE_CHECKING, Final
 
 from bigactors import __version__
-from bigactors.arguments.parser import Parser
 from bigactors.exits import Exit
 from bigactors.terminal import say
 
@@ -19,9 +18,7 @@ package. No plugin is loaded."""
 
 EXAMPLES: Final = ("bigactors plugins",)
 
-
-def add_arguments(_parser: Parser) -> None:
-    """Add nothing: it has no arguments."""
+ARGUMENTS: Final = ""
 
 
 OURS: tuple[tuple[str, str], ...] = (

@@ -3,9 +3,9 @@
 
 from typing import Final
 
-from bigactors.commands.hold import add_arguments, run
+from bigactors.commands.hold import ARGUMENTS, run
 
-__all__ = ["DESCRIPTION", "EXAMPLES", "add_arguments", "run"]
+__all__ = ["ARGUMENTS", "DESCRIPTION", "EXAMPLES", "run"]
 
 DESCRIPTION: Final = """\
 Order a vehicle to return to its own home, in its mode RTL. From then on the mission does not command it until

@@ -3,8 +3,7 @@
 from argparse import Namespace
 from typing import Final
 
-from bigactors.arguments.options import add_socket, add_speaker
-from bigactors.arguments.parser import Parser
+from bigactors.arguments.options import SOCKET, SPEAKER
 from bigactors.exits import Exit
 from bigactors.mistakes import Mistake
 from bigactors.terminal import say
@@ -15,24 +14,21 @@ other message is refused, and the permitted ones are printed."""
 
 EXAMPLES: Final = ("bigactors say op handover", "bigactors say op handover --by Ana")
 
-
-def add_arguments(parser: Parser) -> None:
-    """Add the arguments of `bigactors say`."""
-    parser.add_argument("agent", metavar="AGENT", help="a bigActor of the running mission")
-    parser.add_argument(
-        "message", metavar="MESSAGE", help="a message that the environment section of the mission permits"
-    )
-    add_speaker(parser)
-    add_socket(parser)
+ARGUMENTS: Final = f"""\
+  agent AGENT  a bigActor of the running mission
+  message MESSAGE  a message that the environment section of the mission permits
+{SPEAKER}
+{SOCKET}"""
 
 
 def run(options: Namespace) -> Exit:
     """Send the message, and print the answer."""
     from adapters.live.operator_socket import say as send
-    from bigactors.sockets import check_texts, heard_at
+    from bigactors.sockets import check_texts, heard_at, speaker
 
-    check_texts("a message", options.agent, options.by, options.message)
-    refusal = heard_at(options.socket, lambda path: send(path, options.agent, options.message, options.by))
+    by = speaker(options.by)
+    check_texts("a message", options.agent, by, options.message)
+    refusal = heard_at(options.socket, lambda path: send(path, options.agent, options.message, by))
     if refusal:
         raise Mistake(refusal, "the environment section of the mission lists the permitted messages")
     say(f"said to {options.agent}: {options.message}")

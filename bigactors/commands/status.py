@@ -3,8 +3,7 @@
 from argparse import Namespace
 from typing import Final
 
-from bigactors.arguments.options import add_socket
-from bigactors.arguments.parser import Parser
+from bigactors.arguments.options import SOCKET
 from bigactors.exits import Exit
 from bigactors.terminal import say
 
@@ -14,10 +13,7 @@ has taken it over; the pending requests; the messages that are permitted now."""
 
 EXAMPLES: Final = ("bigactors status", "watch bigactors status")
 
-
-def add_arguments(parser: Parser) -> None:
-    """Add the arguments of `bigactors status`."""
-    add_socket(parser)
+ARGUMENTS: Final = SOCKET
 
 
 def run(options: Namespace) -> Exit:

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import re
 import sys
-from argparse import ArgumentTypeError, Namespace
+from argparse import Namespace
 from contextlib import AsyncExitStack, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
-from bigactors.arguments.parser import Parser
 from bigactors.exits import Exit
 from bigactors.mistakes import Mistake
 from bigactors.terminal import say
@@ -30,34 +28,13 @@ EXAMPLES: Final = (
     "bigactors studio patrol.mission --no-browser",
 )
 
-
 PORT: Final = 8766
 """The default port of a studio."""
 
-MOST_PORT: Final = 65_535
-
-
-def _port(text: str) -> int:
-    if not (re.fullmatch(r"[0-9]{1,5}", text) and int(text) <= MOST_PORT):
-        raise ArgumentTypeError(f"'{text:.40}' is no port: a whole number to {MOST_PORT}")
-    return int(text)
-
-
-def add_arguments(parser: Parser) -> None:
-    """Add the arguments of `bigactors studio`."""
-    parser.add_argument(
-        "file",
-        metavar="FILE",
-        nargs="?",
-        default="",
-        help="the mission's file; a name of no file begins a new one, that of a shipped mission begins with its text",
-    )
-    parser.add_argument(
-        "--port", metavar="PORT", type=_port, help=f"the port (default: {PORT}, or a free one)"
-    )
-    parser.add_argument(
-        "--no-browser", action="store_true", help="print the link, and leave the browser to you"
-    )
+ARGUMENTS: Final = f"""\
+  file [FILE]  the mission's file; a name of no file begins a new one, that of a shipped mission begins with its text
+  --port PORT  the port (default: {PORT}, or a free one)
+  --no-browser  print the link, and leave the browser to you"""
 
 
 def run(options: Namespace) -> Exit:

@@ -5,7 +5,6 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Final
 
-from bigactors.arguments.parser import Parser
 from bigactors.exits import Exit
 
 DESCRIPTION: Final = """\
@@ -14,6 +13,8 @@ seconds once after an installation. An image of a container is best warmed up wh
 (docs/how-to/check-in-ci.md)."""
 
 EXAMPLES: Final = ("bigactors warm-up", "NUMBA_CACHE_DIR=/var/cache/bigactors bigactors warm-up")
+
+ARGUMENTS: Final = ""
 
 ALIKE: Final = b"""
 mission alike
@@ -41,10 +42,6 @@ SETS: Final = (
     ("times", "handover_timed", ()),
 )
 """What is compiled: its name, and a mission with reductions that needs it."""
-
-
-def add_arguments(_: Parser) -> None:
-    """Add no arguments: `bigactors warm-up` has none."""
 
 
 def run(_: Namespace) -> Exit:

@@ -4,8 +4,6 @@ from argparse import Namespace
 from pathlib import Path
 from typing import Final
 
-from bigactors.arguments.parser import Parser
-from bigactors.arguments.values import corners, named, time_of
 from bigactors.exits import Exit
 from bigactors.terminal import say, tell
 
@@ -21,36 +19,12 @@ EXAMPLES: Final = (
     "bigactors world vessels.nmea --within 52.83,5.66,52.87,5.72",
 )
 
-
-def add_arguments(parser: Parser) -> None:
-    """Add the arguments of `bigactors world`."""
-    parser.add_argument(
-        "files",
-        nargs="+",
-        metavar="FILE",
-        help="places (.geojson, .json, .waypoints, .plan), or AIS (NMEA)",
-    )
-    parser.add_argument(
-        "--at",
-        metavar="TIME",
-        type=time_of,
-        help="the moment of a recording that is shown, such as 2020-04-07T21:42:00Z (default: its end)",
-    )
-    parser.add_argument(
-        "--within",
-        metavar="SOUTH,WEST,NORTH,EAST",
-        type=corners,
-        help="take only entities in this box, in degrees (default: all)",
-    )
-    parser.add_argument(
-        "--kinds", metavar="KIND,...", help="take only entities of these kinds (default: all)"
-    )
-    parser.add_argument(
-        "--output",
-        metavar="FILE",
-        type=named,
-        help="also draw a picture (.svg or .png), or write GeoJSON for other programs (.geojson, RFC 7946)",
-    )
+ARGUMENTS: Final = """\
+  files FILE...  places (.geojson, .json, .waypoints, .plan), or AIS (NMEA)
+  --at TIME  the moment of a recording that is shown, such as 2020-04-07T21:42:00Z (default: its end)
+  --within SOUTH,WEST,NORTH,EAST  take only entities in this box, in degrees (default: all)
+  --kinds KIND,...  take only entities of these kinds (default: all)
+  --output FILE  also draw a picture (.svg or .png), or write GeoJSON for other programs (.geojson, RFC 7946)"""
 
 
 GEOJSON = (".geojson", ".json")

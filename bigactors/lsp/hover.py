@@ -131,18 +131,8 @@ def area_text(square_metres: float) -> str:
 
 
 def _symbol(reading: Reading, symbol: Symbol) -> str:
-    return "\n\n".join([f"**{_WORDS[symbol.sort]}** `{symbol.name}`", *_SAID[symbol.sort](reading, symbol)])
-
-
-_WORDS: Final = {
-    "entity": "entity",
-    "agent": "bigActor",
-    "kind": "kind",
-    "channel": "channel",
-    "rule": "rule",
-    "behaviour": "behaviour",
-    "variable": "variable",
-}
+    word = "bigActor" if symbol.sort == "agent" else symbol.sort
+    return "\n\n".join([f"**{word}** `{symbol.name}`", *_SAID[symbol.sort](reading, symbol)])
 
 
 def _named(reading: Reading, sort: type[N], symbol: Symbol) -> Iterator[N]:

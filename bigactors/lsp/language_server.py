@@ -28,7 +28,7 @@ from bigactors.lsp.fixes import fixes
 from bigactors.lsp.hover import hover
 from bigactors.lsp.outline import Part, outline, title_of
 from bigactors.lsp.positions import LineStarts
-from bigactors.lsp.tokens import MODIFIERS, TYPES, tokens
+from bigactors.lsp.textmate import MODIFIERS, TYPES, tokens
 from specs import MissionError, format_mission
 from specs import syntax as s
 

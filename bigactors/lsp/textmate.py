@@ -1,15 +1,18 @@
-"""The TextMate grammar by which editors and forges colour missions, generated from the parser's grammar."""
+"""The colours of missions: semantic tokens for names, and a TextMate grammar, generated from the parser's grammar."""
 
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
 from typing import Final
 
+from bigactors.lsp.edited_mission import Reading
 from semantics.behaviours.commands import COMMAND_WORDS
 from semantics.properties.kinds import PropertyKind
 from specs.elaboration.expressions import FUNCTIONS
 from specs.grammar import OPERATION_WORDS, QUERY_WORDS, SECTIONS, STATEMENTS, keywords
+from specs.syntax import Span
 
 SCOPE: Final = "source.mission"
 _NAME: Final = r"[^\W\d_]\w*"
@@ -69,3 +72,33 @@ def _rule(scope: str, match: str, inner: dict[str, str] | None = None) -> dict[s
 def _new_name(word: str, scope: str) -> dict[str, object]:
     captures = {"1": {"name": "storage.type.mission"}, "2": {"name": f"{scope}.mission"}}
     return {"match": rf"\b({word})\s+(?!hosted_at\b)({_NAME})", "captures": captures}
+
+
+TYPES: Final[Mapping[str, str]] = {
+    "type": "kind",
+    "class": "agent",
+    "enumMember": "entity",
+    "event": "channel",
+    "macro": "rule",
+    "function": "behaviour",
+    "variable": "variable",
+}
+"""The protocol's types of tokens, and our sorts of names."""
+
+MODIFIERS: Final = ("declaration",)
+_NUMBERS: Final = {sort: number for number, sort in enumerate(TYPES.values())}
+
+
+@dataclass(frozen=True, slots=True)
+class NameToken:
+    """A name, with the number of its type in `TYPES`."""
+
+    span: Span
+    type: int
+    modifiers: int
+
+
+def tokens(reading: Reading) -> Iterator[NameToken]:
+    """Yield the names of a mission by position."""
+    for each in reading.occurrences.all:
+        yield NameToken(each.span, _NUMBERS[each.symbol.sort], int(each.declares))

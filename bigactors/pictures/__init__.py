@@ -3,8 +3,14 @@
 Beliefs, the actual world and changes come from `semantics`; nothing is decided here.
 """
 
-from bigactors.pictures.configuration_picture import Look, draw_configuration, legend_picture, look_of
-from bigactors.pictures.panels import Panels, logical_picture
+from bigactors.pictures.configuration_picture import (
+    Look,
+    Panels,
+    draw_configuration,
+    legend_picture,
+    logical_picture,
+    look_of,
+)
 from bigactors.pictures.region_marks import RegionMarks, marks_of
 from bigactors.pictures.scene import channels_of, shown_names
 from bigactors.pictures.trace import draw_overview, draw_trace

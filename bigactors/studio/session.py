@@ -12,11 +12,9 @@ from typing import Any, Final
 
 from bigactors.commands.check.file_changes import Looks, look
 from bigactors.lsp.edited_mission import Reading, reading_of
-from bigactors.lsp.textmate import textmate_grammar
-from bigactors.lsp.tokens import TYPES
+from bigactors.lsp.textmate import TYPES, textmate_grammar
 from bigactors.mistakes import Mistake
-from bigactors.studio.child_process import ChildProcess
-from bigactors.studio.flight_process import FlightProcess
+from bigactors.studio.child_process import ChildProcess, FlightProcess
 from bigactors.studio.mission_file import (
     Overwritten,
     Saved,

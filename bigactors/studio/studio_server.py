@@ -7,7 +7,7 @@ from typing import Any, Final
 
 from adapters.console.access import Access, Role
 from adapters.console.console_server import PAGE, PageService, Site
-from bigactors.studio.flight_process import FlightProcess
+from bigactors.studio.child_process import FlightProcess
 from bigactors.studio.page_requests import MOST_BYTES, PROTOCOL
 from bigactors.studio.session import Desk, Session
 

@@ -100,12 +100,8 @@ UNSUPPORTED: Final = (
         "leave --engine out, or give --workers with --engine ray"),
     _P(_F.REFERENCE, _F.CHECKPOINT, _W.DESIGN, "--checkpoint works with the fast and Ray engines only", _ENGINE),
     _P(_F.REFERENCE, _F.SPILL, _W.DESIGN, "--spill works with the fast and Ray engines only", _ENGINE),
-    _P(_F.REFERENCE, _F.PARANOID, _W.DESIGN, "--paranoid works with the fast engine and with reductions only",
+    _P(_F.REFERENCE, _F.PARANOID, _W.DESIGN, "--paranoid works with the fast and Ray engines and with reductions only",
         _ENGINE, frozenset({_F.POR, _F.SYMMETRY})),
-    _P(_F.RAY, _F.PARANOID, _W.UNBUILT, "--paranoid works with the fast engine and with reductions only", _ENGINE),
-    _P(_F.RAY, _F.POR, _W.UNBUILT, "the reduction 'por' is refused: the ray explorer does not reduce", _ENGINE),
-    _P(_F.RAY, _F.SYMMETRY, _W.UNBUILT,
-        "the reduction 'symmetry' is refused: the ray explorer does not reduce", _ENGINE),
     _P(_F.RAY, _F.TIMING, _W.UNBUILT,
         "the engine 'ray' does not explore missions with a section 'timing' yet", _ENGINE),
     _P(_F.POR, _F.TIMING, _W.MATHEMATICS, "the reduction 'por' is refused: it is not sound for missions with a "

@@ -15,6 +15,7 @@ from checker.engines.contract import (
     Keeping,
     Options,
     Reporter,
+    ZoneClock,
 )
 from checker.engines.fast.numba_loading import load_numba
 from checker.engines.reference import explore_one_by_one
@@ -48,6 +49,7 @@ def explore(
     keeping: Keeping | None = None,
     cluster: Cluster | None = None,
     threads: int | None = None,
+    clock: ZoneClock = ZoneClock.LOCAL,
 ) -> Exploration: ...
 @overload
 def explore(
@@ -70,6 +72,7 @@ def explore(  # noqa: PLR0913 - independent options, passed by name
     keeping: Keeping | None = None,
     cluster: Cluster | None = None,
     threads: int | None = None,
+    clock: ZoneClock = ZoneClock.LOCAL,
 ) -> Exploration | ModelExploration[State]:
     """Visit the configurations of a mission, or those that are reachable from one, or a model's states, breadth-first.
 
@@ -96,6 +99,7 @@ def explore(  # noqa: PLR0913 - independent options, passed by name
         keeping or Keeping(),
         cluster or Cluster(),
         threads,
+        clock,
     )
     asked = features(options.limits, keeping, names, cluster=cluster, threads=threads)
     if not isinstance(initial, Configuration):

@@ -105,6 +105,17 @@ class Engine(Enum):
     RAY = "ray"
 
 
+class ZoneClock(Enum):
+    """The clock of a search through zones; both give the same answers.
+
+    A zone in local time has a date for each process, so unrelated steps of several are not ordered. Local time is used
+    where it is sound: not under `fcfs`, where all agents share one queue, nor with spawned agents or symmetry.
+    """
+
+    LOCAL = "local"
+    GLOBAL = "global"
+
+
 @dataclass(frozen=True, slots=True)
 class Cluster:
     """The cluster of `Engine.RAY`.
@@ -155,6 +166,7 @@ class Options:
         keeping: Checkpoints and self-checks, for explorers with rows.
         cluster: The workers of the engine Ray.
         threads: The most threads of the fast engine; None for one for each core.
+        clock: The clock of a search through zones.
     """
 
     limits: Limits = field(default_factory=Limits)
@@ -166,6 +178,7 @@ class Options:
     keeping: Keeping = Keeping()
     cluster: Cluster = Cluster()
     threads: int | None = None
+    clock: ZoneClock = ZoneClock.LOCAL
 
 
 @dataclass(slots=True)

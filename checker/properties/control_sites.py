@@ -2,9 +2,10 @@
 
 from functools import lru_cache
 
-from semantics.behaviours.program import Program, reachable
+from semantics.analysis.traversal import reachable
+from semantics.behaviours.program import Program
 from semantics.behaviours.statements import Block, ControlBy, Spawn
-from semantics.races.relevance import Names, hosts_of, instances
+from semantics.races.relevance import Names, hosts_of, requested
 from semantics.state.configuration import Configuration
 from semantics.state.requests import CTR, FLY
 from semantics.state.setting import Setting
@@ -39,7 +40,7 @@ def _sites(setting: Setting, agent: Name, hosts: Names, control: str) -> tuple[S
 def _may_ask(setting: Setting, number: int, hosts: Names) -> frozenset[str]:
     """Return the controls that a statement may request; empty if it has too many combinations of arguments."""
     statement = setting.program.statements[number]
-    found = instances(setting, statement, hosts) if isinstance(statement, ControlBy) else None
+    found = requested(setting, statement, hosts) if isinstance(statement, ControlBy) else None
     return frozenset(map(str, found or ()))
 
 

@@ -5,6 +5,7 @@ It is a pure function of the mission and its visited parts, independent of the e
 
 from collections.abc import Iterable, Iterator, Mapping, Set
 from dataclasses import dataclass
+from itertools import chain
 from typing import Final
 
 from checker.properties.visited_statements import Visited, passages
@@ -27,7 +28,9 @@ from semantics.behaviours.statements import (
     Tested,
     While,
     branches,
+    inner_blocks,
 )
+from semantics.fixpoints import closure
 from semantics.state.configuration import Configuration
 
 
@@ -130,17 +133,12 @@ _NOTHING_FITS: Final[Mapping[type, str]] = {
 }
 
 
-def _inside(program: Program, block: Block) -> Iterator[int]:
-    """Yield the numbers of the statements of a block, nested ones included."""
-    waiting = list(block)
-    while waiting:
-        number = waiting.pop()
-        yield number
-        statement = program.statements[number]
-        if isinstance(statement, For):
-            waiting.append(statement.each)
-        waiting += statement.body if isinstance(statement, Loop) else ()
-        waiting += [each for branch in branches(statement) for each in branch]
+def _inside(program: Program, block: Block) -> frozenset[int]:
+    """Return the numbers of the statements of a block, nested ones included."""
+    statements = program.statements
+    return closure(
+        block, lambda number: chain.from_iterable(each.block for each in inner_blocks(statements[number]))
+    )
 
 
 class ProgramCoverage:
@@ -190,13 +188,8 @@ class ProgramCoverage:
             for name, behaviour in program.behaviours.items()
             for number in _inside(program, behaviour.body)
         }
-        found: set[str] = set()
-        grown = True
-        while grown:
-            more = {name for number, name in calls if number not in within or within[number] in found}
-            grown = not more <= found
-            found |= more
-        return frozenset(found)
+        first = (name for number, name in calls if number not in within)
+        return closure(first, lambda caller: (name for number, name in calls if within.get(number) == caller))
 
     def idle(self) -> Iterator[Gap]:
         """Yield the mission's rules that no control names."""

@@ -2,11 +2,11 @@
 
 from collections.abc import Iterable, Iterator
 
-from checker.reduction.static_messages import may_take, message_of
+from semantics.analysis.possible_messages import may_take
+from semantics.analysis.traversal import reachable
 from semantics.behaviours.expressions import Literal
 from semantics.behaviours.patterns import Anything, Elements, Exactly, Pattern, bind
 from semantics.behaviours.process_conversion import next_statement
-from semantics.behaviours.program import reachable
 from semantics.behaviours.statements import React, Send
 from semantics.behaviours.values import Value, show
 from semantics.bigactor_rules import linked
@@ -125,7 +125,7 @@ def _may_send(c: Configuration, a: Name, b: Name, patterns: tuple[Pattern, ...])
     program = c.setting.program
     found = (program.statements[number] for number in reachable(program, c.alpha.code(b)))
     sends = [each for each in found if isinstance(each, Send) and _may_be_to(each, a)]
-    return any(may_take(pattern, message_of(each.message)) for pattern in patterns for each in sends)
+    return any(may_take(pattern, each.message) for pattern in patterns for each in sends)
 
 
 def _may_be_to(send: Send, a: Name) -> bool:

@@ -15,10 +15,10 @@ from checker.properties.invariant_vacuity import Valuations
 from semantics.behaviours.expressions import Fault
 from semantics.behaviours.patterns import bind
 from semantics.behaviours.process_conversion import next_statement
-from semantics.behaviours.reaction_rules import moved
 from semantics.behaviours.statements import Block, Call, Loop, React
 from semantics.control import Obstacle, obstacle
 from semantics.environment import Says
+from semantics.fixpoints import closure
 from semantics.properties.propositions import Proposition, counterexample_names, holds
 from semantics.state.cell_values import QUEUE
 from semantics.state.configuration import Configuration, Transition
@@ -26,6 +26,7 @@ from semantics.state.requests import CTR, FLY, MGR, OBS, SND
 from semantics.state.setting import Control, Setting
 from semantics.state.signature import Name
 from semantics.successors import Expansion, moves, served
+from semantics.timing.arrivals import is_unfair
 
 Rules = Callable[[Configuration, Name], Iterable[Transition | Fault]]
 """A rule: yields the steps of an agent."""
@@ -205,29 +206,6 @@ class Arrival(Inspection):
             yield Inspected(("not arrived", waits), None, f"a run may wait here for ever for {waits}")
 
 
-def is_unfair(c: Configuration, transition: Transition) -> bool:
-    """Return whether a transition is the end of a flight without a promise to arrive."""
-    if transition.served is None or not never_ends(c.setting, transition.served.request):
-        return False
-    return not arrives_in_time(c, transition.served.request)
-
-
-def arrives_in_time(c: Configuration, request: object) -> bool:
-    """Return whether a request is a flight with an upper time bound."""
-    if c.setting.timing is None or not isinstance(request, FLY):
-        return False
-    from semantics.timing.flight_times import interval_of_flight  # noqa: PLC0415 - geometry takes its time to load
-
-    return interval_of_flight(c, request).hi is not None
-
-
-def never_ends(setting: Setting, request: object) -> bool:
-    """Return whether a request is a flight without a promise to arrive."""
-    if not isinstance(request, FLY):
-        return False
-    return not all(node in setting.arriving for node, _ in moved(request.reaction, request.match))
-
-
 LAST = 1 << 30
 """The rank after everything pending."""
 
@@ -273,16 +251,13 @@ def is_at_rest(c: Configuration, a: Name) -> bool:
 
 def stands_in(c: Configuration, number: int, block: Block) -> bool:
     """Return whether a statement is in a block, or in a behaviour called there."""
-    program, seen, waiting = c.setting.program, set[str](), [block]
-    while waiting:
-        within = waiting.pop()
-        if number in within:
-            return True
+    program = c.setting.program
+
+    def called(within: Block) -> Iterator[Block]:
         calls = (each for each in map(program.statements.__getitem__, within) if isinstance(each, Call))
-        called = sorted({call.behaviour for call in calls} - seen)
-        seen.update(called)
-        waiting += [program.behaviours[name].body for name in called]
-    return False
+        return (program.behaviours[call.behaviour].body for call in calls)
+
+    return any(number in within for within in closure([block], called))
 
 
 class Computation(Inspection):

@@ -9,23 +9,21 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import assert_never
 
+from semantics.analysis.traversal import expressions_of, reachable
 from semantics.behaviours.expressions import (
     Apply,
     Expression,
     Host,
     Literal,
     QueryOf,
-    RouteOf,
-    SetOf,
-    ShortCircuit,
-    TupleOf,
     Variable,
+    direct_parts,
 )
 from semantics.behaviours.observations import QueryOperator
-from semantics.behaviours.program import expressions_of, reachable
 from semantics.behaviours.reaction_rules import Pattern, Reaction, Term
 from semantics.behaviours.statements import ControlBy, Display, Migrate, Observe, Send, Spawn, Statement
-from semantics.races.relevance import instances
+from semantics.fixpoints import closure
+from semantics.races.relevance import requested
 from semantics.state.configuration import Configuration
 from semantics.state.setting import Scheduler
 from semantics.state.signature import Name
@@ -85,7 +83,10 @@ def footprint(c: Configuration, agent: Name) -> Footprint:
 
 
 class _Text:
-    """The possible statements, reactions and tests of one agent."""
+    """The possible statements, reactions and tests of one agent.
+
+    Only constants name something here, as in the paper. The value flow is finer, and the reductions use it.
+    """
 
     def __init__(self, c: Configuration, agent: Name) -> None:
         self.c = c
@@ -122,7 +123,7 @@ class _Text:
         controls = [statement for statement in self.statements if isinstance(statement, ControlBy)]
         setting = self.c.setting
         hosts = frozenset(setting.kinds) if self.host == ANY else frozenset({self.host})
-        found = [instances(setting, each, hosts) for each in controls]
+        found = [requested(setting, each, hosts) for each in controls]
         if any(each is None for each in found):
             return None
         return tuple(reaction for each in found for reaction in each or ())
@@ -151,13 +152,8 @@ class _Text:
             return frozenset({("parent", ANY)})
         signature, kinds = self.c.setting.signature, self.c.setting.kinds
         there = frozenset(kinds.values())
-        moved, carried = frozenset({kind}), signature[kind].carries & there
-        while not carried <= moved:
-            moved |= carried
-            carried |= frozenset(
-                cargo for each in carried for cargo in signature[each].carries if cargo in there
-            )
-        if any(signature[each].contains for each in moved):
+        carried = closure(signature[kind].carries & there, lambda each: signature[each].carries & there)
+        if any(signature[each].contains for each in {kind, *carried}):
             return frozenset({("parent", ANY)})
         return frozenset(("parent", name) for name, of in kinds.items() if of in carried)
 
@@ -198,13 +194,11 @@ class _Text:
         match expression:
             case Apply("in", (item, Variable(_))):
                 yield self.name(item)
-            case Apply(_, parts) | TupleOf(parts) | SetOf(parts) | RouteOf(parts):
-                for part in parts:
-                    yield from self._asks(part)
-            case ShortCircuit(_, first, second):
-                yield from (*self._asks(first), *self._asks(second))
             case Variable(_):
                 yield ANY
+            case _:
+                for part in direct_parts(expression):
+                    yield from self._asks(part)
 
     def _asked(self, query: QueryOf, tests: list[Name]) -> Iterator[Slot]:
         """Yield the slots that determine whether the tested names are shown."""

@@ -6,22 +6,18 @@ next step of an actor depends only on its agent's code, requests and host, not o
 its later steps.
 """
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from contextlib import suppress
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from functools import cache, lru_cache
-from itertools import product
-from math import prod
 from typing import NamedTuple
 
 from checker.reduction.footprint_slots import NOTHING, SlotFootprint, joined
 from checker.reduction.footprints import Footprints
-from checker.reduction.overapproximation import Overapproximation
-from checker.reduction.possible_values import Roles
 from checker.reduction.race_footprints import Marks
-from checker.reduction.static_messages import ConstantMessage, message_of
-from semantics.behaviours.expressions import Fault
-from semantics.behaviours.program import reachable
+from semantics.analysis.overapproximation import Overapproximation
+from semantics.analysis.traversal import reachable
+from semantics.analysis.value_flow import ValueFlow
+from semantics.behaviours.expressions import Literal
 from semantics.behaviours.reaction_rules import Reaction
 from semantics.behaviours.statements import ControlBy, Migrate, Observe, React, Send, Spawn, Statement
 from semantics.environment import Says
@@ -34,9 +30,6 @@ from semantics.state.setting import Scheduler
 from semantics.state.signature import Name
 
 Requests = tuple[Request, ...]
-
-MOST_INSTANCES = 5_000
-"""The most combinations of a control's arguments; a control with more is assumed to change everything."""
 
 InLine = Observe | ControlBy | Migrate
 """Statements whose requests wait in the line, if there is one."""
@@ -79,7 +72,7 @@ class Actors:
         self.program = c.setting.program
         self.ordered = c.setting.scheduler is not Scheduler.UNORDERED
         bounds = Overapproximation(c)
-        self.roles = Roles(bounds)
+        self.roles = ValueFlow(c.setting, bounds)
         self.footprints = Footprints(bounds, self.roles)
         self._forget()
         everything = joined([*map(self.clause, self.setting.environment), *self._lives(c)])
@@ -216,7 +209,7 @@ class Actors:
         return rested_on | joined(self._of_statement(agent, each) for each in statements)
 
     def _request(self, agent: Name, request: Request) -> SlotFootprint:
-        return self._serve(agent, request, self.roles[agent].hosts)
+        return self._serve(agent, request, self.roles.hosts(agent))
 
     def _serve(self, agent: Name, request: Request, hosts: Iterable[Name]) -> SlotFootprint:
         match request:
@@ -226,7 +219,7 @@ class Actors:
                 return self._of_reaction(agent, reaction)
             case SND(_, to, message):
                 there = to in self.roles.agents
-                return self.footprints.post(agent, hosts, to, ConstantMessage(message)) if there else NOTHING
+                return self.footprints.post(agent, hosts, to, Literal(message)) if there else NOTHING
             case MGR(_, to):
                 return self.footprints.migrate(agent, hosts, to)
             case _:
@@ -238,7 +231,7 @@ class Actors:
 
     def _asked_by(self, agent: Name, number: int) -> SlotFootprint:
         statement: Statement = self.program.statements[number]
-        hosts = self.roles[agent].hosts
+        hosts = self.roles.hosts(agent)
         match statement:
             case Observe(query):
                 asked = self.roles.query(agent, query)
@@ -247,11 +240,9 @@ class Actors:
                 return self._control(agent, statement)
             case Send(message, to):
                 receivers = self.roles.receivers(agent, to)
-                return joined(
-                    self.footprints.post(agent, hosts, each, message_of(message)) for each in receivers
-                )
+                return joined(self.footprints.post(agent, hosts, each, message) for each in receivers)
             case Migrate(host):
-                entities = self.roles.entities(agent, host)
+                entities = self.roles.named_entities(agent, host)
                 return joined(self.footprints.migrate(agent, hosts, each) for each in entities)
             case Spawn():
                 return self.footprints.spawn()
@@ -265,15 +256,5 @@ class Actors:
         return does | self.marks.made(agent, does)
 
     def _control(self, agent: Name, statement: ControlBy) -> SlotFootprint:
-        arguments = (self.roles.entities(agent, each) for each in statement.arguments)
-        several: list[Sequence[Name]] = [sorted(self.roles[agent].hosts), *arguments]
-        if prod(map(len, several)) > MOST_INSTANCES:
-            return EVERYTHING
-        make = self.program.reactions[statement.name]
-        return joined(self._of_reaction(agent, each) for each in _instances(make, several))
-
-
-def _instances(make: Callable[..., Reaction], several: list[Sequence[Name]]) -> Iterator[Reaction]:
-    for chosen in product(*several):
-        with suppress(Fault):  # the command rejects some names
-            yield make(*chosen)
+        found = self.roles.reactions(agent, statement)
+        return EVERYTHING if found is None else joined(self._of_reaction(agent, each) for each in found)

@@ -7,7 +7,6 @@ sound, and for which properties it is refused.
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
-from checker.properties.inspections import is_unfair
 from checker.reduction.actor_footprints import Acting, Actor, Actors
 from checker.reduction.cycle_proviso import Parts, Paths, part_of, parts_of
 from checker.reduction.preserved_runs import propositions_of, steps_of
@@ -18,6 +17,7 @@ from semantics.properties.propositions import Proposition
 from semantics.state.configuration import Configuration, Transition
 from semantics.state.signature import Name
 from semantics.successors import Expansion, by_clause
+from semantics.timing.arrivals import is_unfair
 
 Reached = Callable[[Transition], int | None]
 """Returns the number of a transition's target, None if it is new."""

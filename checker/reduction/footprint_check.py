@@ -10,14 +10,13 @@ from contextlib import suppress
 from dataclasses import replace
 from typing import Any
 
-from checker.engines.fast.access_recording import Asked, CellRecorder, CellSource, ColumnQuestion, Conclusion
-from checker.engines.fast.value_templates import settled
+from checker.recording.access_recording import Asked, CellRecorder, CellSource, ColumnQuestion, Conclusion
+from checker.recording.value_templates import settled
 from checker.reduction.actor_footprints import Acting, Actor, Actors
 from checker.reduction.ample import Ample, disturbed
 from checker.reduction.footprint_slots import NOTHING, Slot, SlotFootprint
 from checker.reduction.race_footprints import ANSWERS, MARKS, slot_of_mark
-from checker.reduction.static_messages import ConstantMessage
-from semantics.behaviours.expressions import Fault
+from semantics.behaviours.expressions import Fault, Literal
 from semantics.behaviours.observations import Fact
 from semantics.bigactor_rules import say, spawn
 from semantics.control import applicable, obstacle
@@ -120,9 +119,7 @@ def slots_over(actors: Actors, cell: Cell) -> Iterator[tuple[Slot, Told | None]]
 
 def _waking(actors: Actors, react: int) -> Told:
     """Return a function that selects the messages of a mailbox that may wake a `react`."""
-    return lambda mailbox: [
-        each for each in mailbox or () if react in actors.footprints.wakes(ConstantMessage(each))
-    ]
+    return lambda mailbox: [each for each in mailbox or () if react in actors.footprints.wakes(Literal(each))]
 
 
 def _observations(line: tuple[Any, ...] | None) -> Any:

@@ -9,9 +9,10 @@ from functools import cache
 from typing import assert_never
 
 from checker.reduction.footprint_slots import NOTHING, Slot, SlotFootprint, Slots
-from checker.reduction.overapproximation import Names, Overapproximation
-from checker.reduction.possible_values import Roles
-from checker.reduction.static_messages import ConstantMessage, Message, wakes
+from semantics.analysis.overapproximation import Names, Overapproximation
+from semantics.analysis.possible_messages import wakes
+from semantics.analysis.value_flow import ValueFlow
+from semantics.behaviours.expressions import Expression, Literal
 from semantics.behaviours.observations import All, Nodes, Query, QueryOperator
 from semantics.behaviours.reaction_rules import (
     LinkTerm,
@@ -33,7 +34,7 @@ AGENTS: Slot = ("agents",)
 class Footprints:
     """The possible reads and writes of rules, within the bounds of one mission."""
 
-    def __init__(self, bounds: Overapproximation, roles: Roles) -> None:
+    def __init__(self, bounds: Overapproximation, roles: ValueFlow) -> None:
         self.bounds = bounds
         self.roles = roles
         self.slots = Slots()
@@ -97,13 +98,13 @@ class Footprints:
         """Bound `actuate`, `command` and `commit` of a reaction, and `control.obstacle`."""
         return _Reacting(self, reaction).footprint() | self.slots.footprint([("host", agent)])
 
-    def post(self, agent: Name, hosts: Iterable[Name], to: Name, message: Message) -> SlotFootprint:
+    def post(self, agent: Name, hosts: Iterable[Name], to: Name, message: Expression) -> SlotFootprint:
         """Bound `snd`: it delivers the message to one mailbox if hosts are linked."""
         reads = [("host", agent), ("host", to), *([AGENTS] if self.roles.may_come(to) else [])]
         delivered = self.slots.footprint(reads, merges=self.mail(to, message))
-        return delivered | self.linked(hosts, self.roles[to].hosts)
+        return delivered | self.linked(hosts, self.roles.hosts(to))
 
-    def mail(self, to: Name, message: Message) -> Iterator[Slot]:
+    def mail(self, to: Name, message: Expression) -> Iterator[Slot]:
         """Yield the slots for each of the receiver's `react` statements that a message may wake, or make fail."""
         for number in self.wakes(message):
             yield from (("mail", to, number), ("fault", to, number))
@@ -163,7 +164,7 @@ class Footprints:
                 return SlotFootprint(writes=self._all_of({entity, *self.bounds.aboard(entity)}))
             case Says(message, agent):
                 reads = [AGENTS] if self.roles.may_come(agent) else []
-                return self.slots.footprint(reads, merges=self.mail(agent, ConstantMessage(message)))
+                return self.slots.footprint(reads, merges=self.mail(agent, Literal(message)))
             case _:
                 assert_never(clause)
 

@@ -11,7 +11,7 @@ from functools import lru_cache
 from hashlib import blake2b
 from typing import Any
 
-from checker.engines.fast.value_templates import holes, join_value, split_value
+from checker.recording.value_templates import holes, join_value, split_value
 from checker.reduction.configuration_renaming import Renaming, mentioned, spelled
 from semantics.behaviours.observations import NOTHING_SEEN, Observation
 from semantics.state.cell_values import AGENTS, NAMES, Cell, Row

@@ -1,12 +1,11 @@
 """Dependence on the order of names: such a mission has no interchangeable names."""
 
 from collections.abc import Iterator
-from dataclasses import fields, is_dataclass
-from typing import Any
 
-from checker.reduction.static_messages import Unknown, may_take
-from semantics.behaviours.expressions import Apply, Expression, Literal, RouteOf, Variable
-from semantics.behaviours.patterns import Exactly, variables
+from semantics.analysis.possible_messages import UNKNOWN, may_take
+from semantics.analysis.traversal import bindings, expressions_of
+from semantics.behaviours.expressions import Apply, Expression, Literal, RouteOf, Variable, subexpressions
+from semantics.behaviours.patterns import variables
 from semantics.behaviours.program import Program
 from semantics.behaviours.statements import (
     Assign,
@@ -14,14 +13,13 @@ from semantics.behaviours.statements import (
     ChooseFrom,
     Display,
     For,
-    ForEach,
-    Match,
     React,
     Send,
     Spawn,
     Statement,
 )
 from semantics.environment import Says
+from semantics.fixpoints import fixpoint
 from semantics.state.configuration import Configuration
 from semantics.state.setting import Scheduler
 
@@ -45,11 +43,12 @@ def ordered(c: Configuration) -> str | None:
             return f"where one alternative of 'choose' fails, those after it in the order of names are lost{line}"
         if isinstance(statement, Display) and not isinstance(statement.value, Literal):
             return f"'display' prints names{line}"
-        if any(isinstance(each, Apply) and each.operator == "first" for each in parts(statement)):
+        inner = (each for whole in expressions_of(statement) for each in subexpressions(whole))
+        if any(isinstance(each, Apply) and each.operator == "first" for each in inner):
             return f"'first' takes names in their order{line}"
         if isinstance(statement, React):
             guarded = [case for case in statement.cases if case.guard is not None]
-            if any(unordered or (told and may_take(case.pattern, Unknown())) for case in guarded):
+            if any(unordered or (told and may_take(case.pattern, UNKNOWN)) for case in guarded):
                 return f"a guard is tried on messages in the order of names, and may fail{line}"
     return None
 
@@ -57,26 +56,20 @@ def ordered(c: Configuration) -> str | None:
 def _routes(program: Program) -> frozenset[str]:
     """Return the variables that always hold a route; a greatest fixpoint because of loops."""
     given = [each for statement in program.statements for each in _given(statement, program)]
-    routes = frozenset(variable for variable, _ in given)
-    while True:
-        others = {variable for variable, value in given if value is None or not _is_route(value, routes)}
-        if not others:
-            return routes
-        routes -= others
-        given = [(variable, value) for variable, value in given if variable in routes]
+
+    def shrink(routes: frozenset[str]) -> frozenset[str]:
+        return routes.difference(
+            variable for variable, value in given if value is None or not _is_route(value, routes)
+        )
+
+    return fixpoint(shrink, frozenset(variable for variable, _ in given))
 
 
 def _given(statement: Statement, program: Program) -> Iterator[tuple[str, Expression | None]]:
     """Yield the variables that a statement binds, each with its expression, None for a value unknown from the text."""
-    match statement:
-        case Assign(variable, value):
-            yield variable, value
-        case Call(behaviour, arguments) | Spawn(_, _, behaviour, arguments):
-            yield from zip(program.behaviours[behaviour].parameters, arguments, strict=True)
-        case ForEach(variable) | ChooseFrom(variable):
-            yield variable, None
-        case React(cases) | Match(_, cases):
-            yield from ((variable, None) for case in cases for variable in variables(case.pattern))
+    is_known = isinstance(statement, Assign | Call | Spawn)
+    for each in bindings(program, statement):
+        yield from ((variable, each.expression if is_known else None) for variable in variables(each.pattern))
 
 
 def _is_route(value: Expression, routes: frozenset[str]) -> bool:
@@ -89,14 +82,3 @@ def _is_route(value: Expression, routes: frozenset[str]) -> bool:
         case Apply("+" | "-" | "minus" | "intersect" | "of", (first, *_)):
             return _is_route(first, routes)
     return False
-
-
-def parts(value: Any) -> Iterator[Any]:
-    """Yield a statement and all expressions and patterns in it."""
-    yield value
-    if isinstance(value, tuple | frozenset):
-        for each in value:
-            yield from parts(each)
-    elif is_dataclass(value) and not isinstance(value, Literal | Exactly):
-        for member in fields(value):
-            yield from parts(getattr(value, member.name))

@@ -9,6 +9,7 @@ from typing import Protocol
 from checker.reduction.configuration_renaming import Renaming
 from checker.reduction.mission_automorphisms import changing
 from checker.reduction.stutter_invariance import is_stutter_invariant
+from semantics.fixpoints import closure
 from semantics.properties.kinds import PropertyKind
 from semantics.properties.property import Property
 from semantics.properties.propositions import And, Exists, Not, Or, Proposition
@@ -60,7 +61,7 @@ def refused_by_por(asked: Property) -> str | None:
 
 def refused_formula(formula: Temporal) -> str | None:
     """Return why partial-order reduction does not preserve a formula, None if it does."""
-    if any(isinstance(each, Next) for each in _within(formula)):
+    if any(isinstance(each, Next) for each in closure([formula], parts)):
         return "'X' counts steps, and independent steps of others are left out"
     if any(isinstance(each, Enabled) for each in atoms(formula)):
         return "'enabled' asks which steps are possible, and some of these are left out"
@@ -69,15 +70,6 @@ def refused_formula(formula: Temporal) -> str | None:
             "'taken' asks here for the very next step, and independent steps of others are left out before it"
         )
     return None
-
-
-def _within(formula: Temporal) -> Iterator[Temporal]:
-    """Yield a formula and all its parts."""
-    waiting = [formula]
-    while waiting:
-        one = waiting.pop()
-        waiting.extend(parts(one))
-        yield one
 
 
 def propositions_of(runs: Iterable[Property]) -> Iterator[Proposition]:

@@ -12,9 +12,9 @@ from functools import cache
 from checker.reduction.footprint_slots import NOTHING, Slot, SlotFootprint, joined
 from checker.reduction.footprints import Footprints
 from checker.reduction.observation_flow import tellers
-from checker.reduction.overapproximation import Names
+from semantics.analysis.overapproximation import Names
+from semantics.analysis.traversal import reachable
 from semantics.behaviours.observations import Nodes, Of, Query, QueryOperator
-from semantics.behaviours.program import reachable
 from semantics.behaviours.statements import Observe
 from semantics.races.provenance import ANY, SLOT, Key, Provenance
 from semantics.races.relevance import Questions, anybodys, hosts_of, questions_in, slots_of, tells

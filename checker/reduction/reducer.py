@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
+from typing import Self
 
 from checker.reduction.ample import Ample, Followed, Reached
 from checker.reduction.conjunct_orbits import one_of_each
@@ -47,7 +48,9 @@ class Reduced:
         formulas: Sequence[Proposition] = (),
         runs: Iterable[Property] = (),
     ) -> None:
-        self.reductions = frozenset(reductions)
+        runs = tuple(runs)
+        self.made_of = (initial, tuple(reductions), tuple(formulas), runs)
+        self.reductions = frozenset(self.made_of[1])
         self.names = tuple(each for each in Reduction if each in self.reductions)
         self.symmetry: MissionSymmetry | None = None
         if Reduction.POR in self.reductions:
@@ -62,6 +65,10 @@ class Reduced:
         self.runs = tuple(self.decided_for(each) for each in asked if self.refuses(each) is None)
         self.ample = Ample(initial, formulas, self.runs) if Reduction.POR in self.reductions else None
         self.identity = repr((tuple(map(str, self.names)), tuple(formulas), self.runs))
+
+    def __reduce__(self) -> tuple[type[Self], tuple[object, ...]]:
+        """Return how another process makes the same."""
+        return type(self), self.made_of
 
     @property
     def putting_off(self) -> bool:

@@ -8,7 +8,7 @@ from functools import cached_property, lru_cache
 from itertools import combinations
 from typing import Any
 
-from checker.engines.fast.value_templates import mobile_names
+from checker.recording.value_templates import mobile_names
 from checker.reduction.alpha_equivalence import UNLIKE_TEXTS, Pairing, Unlike
 from checker.reduction.configuration_renaming import Renaming
 from checker.reduction.member_items import Class, Items

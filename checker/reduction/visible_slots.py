@@ -4,7 +4,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
-from checker.reduction.overapproximation import Overapproximation
+from semantics.analysis.overapproximation import Overapproximation
 from semantics.behaviours.process_conversion import waits
 from semantics.properties.propositions import (
     Atom,

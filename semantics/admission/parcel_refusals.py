@@ -2,12 +2,12 @@
 
 from collections.abc import Iterator, Sequence
 
-from semantics.admission.abstract_values import Abstract
-from semantics.admission.program_points import is_point
-from semantics.admission.value_flow import PossibleBehaviour, ValueFlow
+from semantics.admission.program_points import is_point, once
+from semantics.analysis.abstract_values import Abstract
+from semantics.analysis.traversal import reachable
+from semantics.analysis.value_flow import PossibleBehaviour, ValueFlow
 from semantics.behaviours.expressions import Fault, QueryOf
 from semantics.behaviours.observations import All, Nodes, Query
-from semantics.behaviours.program import reachable
 from semantics.behaviours.statements import ControlBy, Migrate, Observe, Send, Statement
 from semantics.behaviours.values import Route
 from semantics.environment import Says
@@ -94,15 +94,15 @@ class _Reading:
         if any(request.agent != self.agent for request in requests):
             yield "it holds requests of another agent"
             return
-        once = self.flow.once(self.agent)
-        taken = sorted(self.role.statements - (once & reachable(self.program, code)))
+        single_use = once(self.program, self.role.starts)
+        taken = sorted(self.role.statements - (single_use & reachable(self.program, code)))
         single = []
         for request in requests:
             makers = [number for number in taken if self._makes(number, request)]
             if not makers:
                 yield f"no statement that it has passed makes this request: {_shown(request):.100}"
                 return
-            if once.issuperset(makers):
+            if single_use.issuperset(makers):
                 single.append(makers)
         if not _have_each_their_own(single):
             yield "it has more requests than its statements make"

@@ -1,18 +1,12 @@
 """Control points: the code that a bigActor may have left to run, according to the nesting of its text."""
 
 from collections.abc import Iterable, Iterator
+from itertools import chain
 
-from semantics.behaviours.program import Program, leads_to
-from semantics.behaviours.statements import (
-    Block,
-    Call,
-    For,
-    ForEach,
-    Loop,
-    Statement,
-    While,
-    branches,
-)
+from semantics.analysis.traversal import blocks
+from semantics.behaviours.program import Program
+from semantics.behaviours.statements import Block, ForEach, Loop, Statement, While
+from semantics.fixpoints import closure
 
 Point = tuple[Block, int]
 """A block, and the number of its statements that have been taken or entered."""
@@ -39,30 +33,16 @@ def _statement(program: Program, number: int) -> Statement | None:
     return program.statements[number] if 0 <= number < len(program.statements) else None
 
 
-def _entered(program: Program, points: set[Point]) -> set[Point]:
+def _entered(program: Program, points: set[Point]) -> frozenset[Point]:
     """Return the points, and the ends of all blocks that may have been entered from them."""
-    found, waiting = set(points), list(points)
-    while waiting:
-        for block in _blocks(program, *waiting.pop()):
-            point = (block, len(block))
-            if point not in found:
-                found.add(point)
-                waiting.append(point)
-    return found
+    return closure(points, lambda point: ((block, len(block)) for block in _entered_from(program, *point)))
 
 
-def _blocks(program: Program, block: Block, at: int) -> Iterator[Block]:
+def _entered_from(program: Program, block: Block, at: int) -> Iterator[Block]:
     """Yield the blocks whose code may precede the rest of a block."""
     taken = program.statements[block[at - 1]] if at else None
-    match taken:
-        case None | Loop() | While() | ForEach():
-            pass
-        case Call(behaviour):
-            yield program.behaviours[behaviour].body
-        case For(_, _, each):
-            yield (each,)
-        case _:
-            yield from branches(taken)
+    if taken is not None and not isinstance(taken, STAYING):
+        yield from blocks(program, taken)
     staying = program.statements[block[at]] if at < len(block) else None
     if isinstance(staying, STAYING):
         yield staying.body
@@ -79,9 +59,9 @@ def once(program: Program, starts: Iterable[Block]) -> frozenset[int]:
         if number in seen:
             if number not in again:
                 again.add(number)
-                waiting.extend(leads_to(program, statement))
+                waiting.extend(chain.from_iterable(blocks(program, statement)))
             continue
         seen.add(number)
-        inside = tuple(leads_to(program, statement))
+        inside = tuple(chain.from_iterable(blocks(program, statement)))
         waiting.extend(inside * 2 if isinstance(statement, STAYING) else inside)
     return frozenset(seen - again)

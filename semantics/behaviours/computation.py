@@ -9,6 +9,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field, replace
 from typing import Final
 
+from semantics.analysis.termination import assigned, ends, migrates
 from semantics.behaviours.expressions import (
     EvaluationScope,
     Expression,
@@ -39,7 +40,6 @@ from semantics.behaviours.statements import (
     Tested,
     While,
 )
-from semantics.behaviours.termination import assigned, ends, migrates
 from semantics.behaviours.values import Value, show, spoken
 from semantics.races.provenance import NOTHING, Provenance, asking, deciding
 from semantics.state.agents import Code, Store

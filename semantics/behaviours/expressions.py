@@ -493,13 +493,32 @@ def reads_host(expression: Any) -> bool:
 
 def leaves(expression: Any) -> Iterator[Expression]:
     """Yield the constants, variables and names in an expression or a query."""
+    atoms = Literal | Variable | Host | Self
+    return (each for each in subexpressions(expression) if isinstance(each, atoms))
+
+
+def subexpressions(expression: Any) -> Iterator[Expression]:
+    """Yield an expression, or that of a query, with all its parts."""
+    if not isinstance(expression, QueryOf | None):
+        yield expression
+    for part in direct_parts(expression):
+        yield from subexpressions(part)
+
+
+def direct_parts(expression: Any) -> tuple[Any, ...]:
+    """Return the direct parts of an expression or a query."""
     match expression:
         case Apply(_, parts) | TupleOf(parts) | SetOf(parts) | RouteOf(parts):
-            for part in parts:
-                yield from leaves(part)
+            return parts
         case ShortCircuit(_, first, second):
-            yield from (*leaves(first), *leaves(second))
+            return (first, second)
         case QueryOf(_, argument):
-            yield from leaves(argument)
-        case Literal() | Variable() | Host() | Self():
-            yield expression
+            return (argument,)
+        case _:
+            return ()
+
+
+def leaf_of(query: QueryOf) -> tuple[Expression, ...]:
+    """Return the whole expression at the leaf of a query, if it has one."""
+    inner = query.argument
+    return () if inner is None else leaf_of(inner) if isinstance(inner, QueryOf) else (inner,)

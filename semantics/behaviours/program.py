@@ -1,35 +1,22 @@
 """A program: the numbered statements of a mission, and the variables that it keeps."""
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, fields, replace
 from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING, Any, Protocol
 
-from semantics.behaviours.expressions import Expression, QueryOf, free
-from semantics.behaviours.patterns import variables
+from semantics.behaviours.expressions import free
 from semantics.behaviours.statements import (
     Assign,
     Block,
-    Call,
-    Case,
-    Choose,
-    ChooseFrom,
-    ControlBy,
     Display,
-    For,
     ForEach,
-    If,
-    Loop,
-    Match,
-    Migrate,
-    Observe,
-    React,
-    Send,
-    Spawn,
     Statement,
-    While,
     branches,
+    inner_blocks,
+    operands,
 )
+from semantics.fixpoints import fixpoint
 from semantics.state.agents import written
 from semantics.state.signature import Name
 
@@ -130,12 +117,11 @@ class Program:
     @cached_property
     def _reads(self) -> list[Names]:
         """The variables that each statement may read before it binds them: a least fixpoint, since loops lead back."""
-        reads = [NONE] * len(self.statements)
-        grown = True
-        while grown:
-            after = [_reads(statement, reads, self.statements) for statement in self.statements]
-            grown, reads = after != reads, after
-        return reads
+
+        def grow(reads: list[Names]) -> list[Names]:
+            return [_reads(statement, reads, self.statements) for statement in self.statements]
+
+        return fixpoint(grow, [NONE] * len(self.statements))
 
     @cached_property
     def live(self) -> Callable[[Block], Names]:
@@ -165,109 +151,11 @@ def _live(block: Block, reads: list[Names], statements: tuple[Statement, ...]) -
     return live
 
 
-def _reads(  # noqa: PLR0912  # one case for each kind of statement
-    statement: Statement, reads: list[Names], statements: tuple[Statement, ...]
-) -> Names:
-    def live(block: Block) -> Names:
-        return _live(block, reads, statements)
-
-    def of_cases(cases: Iterable[Case]) -> Names:
-        return NONE.union(*((free(case.guard) | live(case.body)) - variables(case.pattern) for case in cases))
-
-    match statement:
-        case Observe(expression) | Migrate(expression) | Assign(_, expression) | Display(expression):
-            return free(expression)
-        case Send(message, to):
-            return free(message) | free(to)
-        case ControlBy(_, arguments) | Call(_, arguments):
-            return NONE.union(*map(free, arguments))
-        case Spawn(_, host, _, arguments):
-            return free(host).union(*map(free, arguments))
-        case If(test, then, otherwise):
-            return free(test) | live(then) | live(otherwise)
-        case While(test, body):
-            return free(test) | live(body)
-        case Loop(body):
-            return live(body)
-        case For(members, rest, each):
-            return free(members) | (reads[each] - {rest})
-        case ForEach(variable, rest, body):
-            return (live(body) - {variable}) | {rest}
-        case ChooseFrom(variable, members, body):
-            return free(members) | (live(body) - {variable})
-        case Choose(alternatives):
-            return NONE.union(*map(live, alternatives))
-        case Match(value, cases):
-            return free(value) | of_cases(cases)
-        case React(cases, after):
-            return of_cases(cases) | (NONE if after is None else live(after.body))
-        case _:
-            return NONE
-
-
-@lru_cache(maxsize=1 << 12)
-def reachable(program: Program, code: Block) -> frozenset[int]:
-    """Return the statements that code may reach, without those of the agents it spawns."""
-    return frozenset[int]().union(*(_within(program, number) for number in code))
-
-
-@lru_cache(maxsize=1 << 12)
-def _within(program: Program, first: int) -> frozenset[int]:
-    """Return the statements that a statement may reach, itself included."""
-    seen: set[int] = set()
-    waiting = [first]
-    while waiting:
-        number = waiting.pop()
-        if number not in seen:
-            seen.add(number)
-            waiting.extend(leads_to(program, program.statements[number]))
-    return frozenset(seen)
-
-
-def leads_to(program: Program, statement: Statement) -> Iterator[int]:
-    """Yield the statements inside a statement, or in the behaviour that it calls."""
-    match statement:
-        case If(_, then, otherwise):
-            yield from (*then, *otherwise)
-        case While(_, body) | Loop(body) | ForEach(_, _, body) | ChooseFrom(_, _, body):
-            yield from body
-        case For(_, _, each):
-            yield each
-        case Choose(alternatives):
-            yield from (number for block in alternatives for number in block)
-        case React() | Match():
-            yield from (number for block in branches(statement) for number in block)
-        case Call(behaviour):
-            yield from program.behaviours[behaviour].body
-
-
-def expressions_of(statement: Statement) -> Iterable[Expression]:
-    """Return the expressions whose value decides a step, or is kept, sent or used."""
-    match statement:
-        case Assign(_, expression) | If(expression, _, _) | While(expression, _) | For(expression, _, _):
-            return (expression,)
-        case ChooseFrom(_, expression, _) | Migrate(expression):
-            return (expression,)
-        case Send(message, to):
-            return (message, to)
-        case ControlBy(_, arguments) | Call(_, arguments):
-            return arguments
-        case Match(value, cases):
-            return (value, *_guards(cases))
-        case React(cases):
-            return _guards(cases)
-        case Observe(query):
-            return _leaves(query)
-        case Spawn(_, host, _, arguments):
-            return (host, *arguments)
-        case _:
-            return ()
-
-
-def _guards(cases: tuple[Case, ...]) -> tuple[Expression, ...]:
-    return tuple(case.guard for case in cases if case.guard is not None)
-
-
-def _leaves(query: QueryOf) -> tuple[Expression, ...]:
-    inner = query.argument
-    return () if inner is None else _leaves(inner) if isinstance(inner, QueryOf) else (inner,)
+def _reads(statement: Statement, reads: list[Names], statements: tuple[Statement, ...]) -> Names:
+    shown = (statement.value,) if isinstance(statement, Display) else operands(statement)
+    own = frozenset({statement.rest}) if isinstance(statement, ForEach) else NONE
+    inner = (
+        (free(each.guard) | _live(each.block, reads, statements)) - each.binds
+        for each in inner_blocks(statement)
+    )
+    return own.union(*map(free, shown), *inner)

@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 
 from semantics.behaviours.durations import duration_text
-from semantics.behaviours.expressions import Expression, QueryOf
-from semantics.behaviours.patterns import Pattern
+from semantics.behaviours.expressions import Expression, QueryOf, leaf_of
+from semantics.behaviours.patterns import Pattern, variables
 from semantics.state.signature import Name
 
 Block = tuple[int, ...]
@@ -192,19 +192,60 @@ Internal = Assign | Display | Tested | If | While | For | ForEach | Match | Call
 Statement = Command | Choice | Internal | Loop
 
 
-def branches(statement: Statement) -> tuple[Block, ...]:
-    """Return the blocks of which a statement takes one; of a loop that may be skipped, only its body."""
+@dataclass(frozen=True, slots=True)
+class InnerBlock:
+    """A block inside a statement: the guard before it, if it has one, and the variables that entering it binds."""
+
+    block: Block
+    guard: Expression | None = None
+    binds: frozenset[str] = frozenset()
+
+
+def inner_blocks(statement: Statement) -> tuple[InnerBlock, ...]:
+    """Return the blocks inside a statement, in written order."""
     match statement:
         case If(_, then, otherwise):
-            return (then, otherwise)
+            return (InnerBlock(then), InnerBlock(otherwise))
         case React(cases, after):
-            return (*(case.body for case in cases), *(() if after is None else (after.body,)))
+            return (*map(_of_case, cases), *(() if after is None else (InnerBlock(after.body),)))
         case Match(_, cases):
-            return tuple(case.body for case in cases)
+            return tuple(map(_of_case, cases))
         case Choose(alternatives):
-            return alternatives
-        case While(_, body) | ForEach(_, _, body) | ChooseFrom(_, _, body):
-            return (body,)
+            return tuple(map(InnerBlock, alternatives))
+        case While(_, body) | Loop(body):
+            return (InnerBlock(body),)
+        case ForEach(variable, _, body) | ChooseFrom(variable, _, body):
+            return (InnerBlock(body, None, frozenset({variable})),)
+        case For(_, rest, each):
+            return (InnerBlock((each,), None, frozenset({rest})),)
+        case _:
+            return ()
+
+
+def _of_case(case: Case) -> InnerBlock:
+    return InnerBlock(case.body, case.guard, variables(case.pattern))
+
+
+def branches(statement: Statement) -> tuple[Block, ...]:
+    """Return the blocks of which a statement takes one; of a loop that may be skipped, only its body."""
+    return () if isinstance(statement, For | Loop) else tuple(each.block for each in inner_blocks(statement))
+
+
+def operands(statement: Statement) -> tuple[Expression, ...]:
+    """Return the expressions that a statement evaluates itself: without guards, and without those that it displays."""
+    match statement:
+        case Assign(_, expression) | If(expression) | While(expression) | For(expression) | Match(expression):
+            return (expression,)
+        case ChooseFrom(_, expression) | Migrate(expression):
+            return (expression,)
+        case Send(message, to):
+            return (message, to)
+        case ControlBy(_, arguments) | Call(_, arguments):
+            return arguments
+        case Spawn(_, host, _, arguments):
+            return (host, *arguments)
+        case Observe(query):
+            return leaf_of(query)
         case _:
             return ()
 

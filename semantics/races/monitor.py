@@ -8,9 +8,9 @@ from dataclasses import replace
 from functools import cache, partial
 from typing import NamedTuple
 
+from semantics.analysis.termination import begun_loops
 from semantics.behaviours.observations import QueryOperator, QueryStep, Steps
 from semantics.behaviours.queries import answers, denoted
-from semantics.behaviours.termination import begun_loops
 from semantics.races.provenance import (
     ANY,
     EVERYTHING,

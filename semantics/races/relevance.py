@@ -5,46 +5,36 @@ possible.
 """
 
 from collections.abc import Iterable, Iterator
-from contextlib import suppress
 from functools import lru_cache
-from itertools import product
-from math import prod
 
+from semantics.analysis.control_instances import instances
+from semantics.analysis.traversal import BoundPattern, bindings, expressions_of, reachable
 from semantics.behaviours.expressions import (
     OPERATORS,
     Apply,
     Expression,
-    Fault,
     Host,
     Literal,
     QueryOf,
-    RouteOf,
-    SetOf,
-    ShortCircuit,
-    TupleOf,
     free,
     members_asked,
     reads_host,
+    subexpressions,
 )
 from semantics.behaviours.patterns import variables
-from semantics.behaviours.program import Program, expressions_of, reachable
+from semantics.behaviours.program import Program
 from semantics.behaviours.reaction_rules import NodeTerm, Pattern, Reaction
 from semantics.behaviours.statements import (
-    Assign,
-    Call,
-    Case,
     ChooseFrom,
     ControlBy,
     For,
-    ForEach,
-    Match,
     Migrate,
     Observe,
-    React,
     Send,
     Spawn,
     Statement,
 )
+from semantics.fixpoints import fixpoint
 from semantics.races.provenance import ANY, SLOT, Key
 from semantics.state.agents import Code
 from semantics.state.configuration import Configuration
@@ -56,9 +46,6 @@ Questions = frozenset[Key]
 """Keys; a key about `ANY` stands for those about every name."""
 
 SLOTS: Questions = frozenset((f"{SLOT}{kind}", ANY) for kind in ("parent", "links", "children"))
-
-MOST_INSTANCES = 5_000
-"""The most argument combinations of a control that are examined; with more, it may use any slot."""
 
 
 def relevant(keys: Iterable[Key], questions: Questions) -> frozenset[Key]:
@@ -103,13 +90,10 @@ def communicated_variables(program: Program, code: Code) -> Names:
 
 @lru_cache(maxsize=1 << 12)
 def _told(program: Program, reach: frozenset[int]) -> Names:
-    told: Names = frozenset()
-    while True:
-        parts = (_passed_on(program, program.statements[number], told) for number in sorted(reach))
-        grown = told.union(*parts)
-        if grown == told:
-            return told
-        told = grown
+    statements = [program.statements[number] for number in sorted(reach)]
+    return fixpoint(
+        lambda told: told.union(*(_passed_on(program, each, told) for each in statements)), frozenset[Name]()
+    )
 
 
 def uses_host(program: Program, code: Code) -> bool:
@@ -139,25 +123,17 @@ def _passed_on(program: Program, statement: Statement, told: Names) -> Names:
             return _read(host).union(*map(_read, arguments))
         case Migrate(host):
             return _read(host) if HOSTED in told else frozenset()
-        case Assign(variable, source) | For(source, variable, _) | ChooseFrom(variable, source, _):
-            return _read(source) if variable in told else frozenset()
-        case ForEach(variable, rest, _):
-            return frozenset({rest} if variable in told else ())
-        case Match(source, cases):
-            return _read(source) if _binds(cases, told) else frozenset()
-        case React(cases):
-            return frozenset({HEARD} if _binds(cases, told) else ())
         case Observe(query):
             return _read(query) if HEARD in told else frozenset()
-        case Call(behaviour, arguments):
-            given = zip(program.behaviours[behaviour].parameters, arguments, strict=True)
-            return frozenset[Name]().union(*(_read(each) for name, each in given if name in told))
         case _:
-            return frozenset()
+            found = (
+                each for each in bindings(program, statement) if not told.isdisjoint(variables(each.pattern))
+            )
+            return frozenset[Name]().union(*map(_source, found))
 
 
-def _binds(cases: Iterable[Case], told: Names) -> bool:
-    return any(not told.isdisjoint(variables(case.pattern)) for case in cases)
+def _source(binding: BoundPattern) -> Names:
+    return frozenset({HEARD}) if binding.expression is None else _read(binding.expression)
 
 
 def tells(program: Program, reach: Iterable[int]) -> bool:
@@ -227,46 +203,25 @@ def questions_in(setting: Setting, reach: frozenset[int], hosts: Names) -> Quest
     return frozenset(found)
 
 
-def _asked(expression: Expression | QueryOf | None) -> Iterator[Key]:
-    match expression:
-        case Apply(operator, arguments):
-            if free(expression):
-                shown = (each.value if isinstance(each, Literal) else ANY for each in arguments)
-                yield from OPERATORS[operator].asks(*shown)
-            for each in arguments:
-                yield from _asked(each)
-        case TupleOf(items) | SetOf(items) | RouteOf(items):
-            for each in items:
-                yield from _asked(each)
-        case ShortCircuit(_, first, second):
-            yield from (*_asked(first), *_asked(second))
-        case QueryOf(_, argument):
-            yield from _asked(argument)
+def _asked(expression: Expression) -> Iterator[Key]:
+    for part in subexpressions(expression):
+        if isinstance(part, Apply) and free(part):
+            shown = (each.value if isinstance(each, Literal) else ANY for each in part.arguments)
+            yield from OPERATORS[part.operator].asks(*shown)
 
 
 def _slots(setting: Setting, control: ControlBy, hosts: Names) -> Questions:
     """Return the slots that a control may use, for any values of its arguments."""
-    found = instances(setting, control, hosts)
+    found = requested(setting, control, hosts)
     if found is None:
         return SLOTS
     return frozenset[Key]().union(*map(slots_of, {reaction.redex for reaction in found}))
 
 
-def instances(setting: Setting, control: ControlBy, hosts: Names) -> tuple[Reaction, ...] | None:
+def requested(setting: Setting, control: ControlBy, hosts: Names) -> tuple[Reaction, ...] | None:
     """Return the reactions that a control may request, for any names as arguments; None if there are too many."""
-    ranges = _ranges(setting, control, hosts)
-    make = setting.program.reactions.get(control.name)  # a rule with a mistake, which is reported, makes none
-    if make is None or prod(map(len, ranges)) > MOST_INSTANCES:
-        return None
-    found = []
-    for host, *names in product(*map(sorted, ranges)):
-        with suppress(Fault):  # the command may reject some names
-            found.append(make(host, *names))
-    return tuple(found)
-
-
-def _ranges(setting: Setting, control: ControlBy, hosts: Names) -> list[Names]:
-    return [hosts, *(_range(setting, each, hosts) for each in control.arguments)]
+    ranges = (hosts, *(_range(setting, each, hosts) for each in control.arguments))
+    return instances(setting.program, control.name, ranges)
 
 
 def _range(setting: Setting, argument: Expression, hosts: Names) -> Names:

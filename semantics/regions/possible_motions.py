@@ -5,8 +5,9 @@ from collections.abc import Iterable
 from physical import EntityMotion
 from physical.place_nesting import Place
 from semantics.environment import Appears, Drifts, Vanishes
+from semantics.fixpoints import closure
 from semantics.regions.possible_moves import PossibleMove, possible_moves
-from semantics.regions.region_facts import RegionFacts, reached
+from semantics.regions.region_facts import RegionFacts
 from semantics.state.configuration import Configuration
 from semantics.state.physical_model import Carried, InTransit, Placed, Placement
 from semantics.state.setting import Setting
@@ -40,7 +41,7 @@ class _Gathering:
             requested[move.entity].append(move)
         self.carriers = {name: self._carriers(name, moves) for name, moves in requested.items()}
         self.moves = {name: moves if self._may_move(name) else [] for name, moves in requested.items()}
-        self.bearers = {name: reached(name, self.carriers.__getitem__) for name in requested}
+        self.bearers = {name: closure([name], self.carriers.__getitem__) for name in requested}
         self.vanishing = frozenset(e.entity for e in self.setting.environment if isinstance(e, Vanishes))
 
     def _carriers(self, name: Name, moves: Iterable[PossibleMove]) -> frozenset[Name]:

@@ -1,24 +1,17 @@
 """Possible moves: the entities that the text of a mission may move, where to, and by which places."""
 
-from collections.abc import Iterable, Iterator
-from contextlib import suppress
-from itertools import product
-from math import prod
+from collections.abc import Iterator
+from functools import lru_cache
 from typing import NamedTuple
 
-from semantics.admission.abstract_values import Abstract
-from semantics.admission.value_flow import ValueFlow, flow_of
-from semantics.behaviours.expressions import Fault
-from semantics.behaviours.program import reachable
+from semantics.analysis.overapproximation import Overapproximation
+from semantics.analysis.value_flow import ValueFlow
 from semantics.behaviours.reaction_rules import NodeTerm, PlaceTerm, Reaction
 from semantics.behaviours.statements import ControlBy
 from semantics.state.configuration import Configuration
 from semantics.state.requests import CTR, FLY
 from semantics.state.setting import Setting
 from semantics.state.signature import Name
-
-MOST_ARGUMENTS = 5_000
-"""The most argument combinations of one control that are examined; with more, it may move everything everywhere."""
 
 
 class PossibleMove(NamedTuple):
@@ -32,12 +25,33 @@ class PossibleMove(NamedTuple):
 
 def possible_moves(c: Configuration) -> tuple[PossibleMove, ...]:
     """Return all moves that agents may request from an initial configuration on, sorted."""
-    flow = flow_of(c.setting)
+    flow = ValueFlow(c.setting, Overapproximation(c))
     found: set[PossibleMove] = set()
-    for agent in sorted(flow.agents.union(c.alpha.names())):
+    for agent in flow.agents:
         reactions = dict.fromkeys(_requested(c, flow, agent))
         found.update(move for reaction in reactions for move in _moves(c.setting, agent, reaction))
     return tuple(sorted(found))
+
+
+def may_move(setting: Setting, agent: Name, entity: Name) -> bool:
+    """Whether a control of an agent's text may move an entity; true for an agent without a text."""
+    moved = _moved(setting).get(agent)
+    return moved is None or entity in moved
+
+
+@lru_cache(maxsize=8)
+def _moved(setting: Setting) -> dict[Name, frozenset[Name]]:
+    """Return for each agent with a text the entities that it may move."""
+    flow = ValueFlow(setting)
+    return {
+        agent: frozenset(
+            move.entity
+            for reaction in dict.fromkeys(_controls(setting, flow, agent))
+            for move in _moves(setting, agent, reaction)
+        )
+        for agent, role in flow.roles.items()
+        if role.starts
+    }
 
 
 def _requested(c: Configuration, flow: ValueFlow, agent: Name) -> Iterator[Reaction | None]:
@@ -46,46 +60,16 @@ def _requested(c: Configuration, flow: ValueFlow, agent: Name) -> Iterator[React
         for pending in c.eta.of(agent):
             if isinstance(pending.request, CTR | FLY):
                 yield pending.request.reaction
-    for number in sorted(_statements(c, flow, agent)):
-        statement = c.setting.program.statements[number]
+    yield from _controls(c.setting, flow, agent)
+
+
+def _controls(setting: Setting, flow: ValueFlow, agent: Name) -> Iterator[Reaction | None]:
+    """Yield the reactions of an agent's controls; None for any."""
+    for number in flow[agent].statements:
+        statement = setting.program.statements[number]
         if isinstance(statement, ControlBy):
-            yield from _instances(c.setting, flow, agent, statement)
-
-
-def _statements(c: Configuration, flow: ValueFlow, agent: Name) -> Iterable[int]:
-    """Return the statements that an agent may reach; those of a text without its body are in its code."""
-    known = flow.roles[agent].statements if agent in flow.roles else set[int]()
-    code = c.alpha.code(agent) if agent in c.alpha else ()
-    return known | reachable(c.setting.program, code)
-
-
-def _instances(
-    setting: Setting, flow: ValueFlow, agent: Name, control: ControlBy
-) -> Iterator[Reaction | None]:
-    """Yield the reactions of a control, for all names that its arguments may denote."""
-    if agent in flow.roles and flow.roles[agent].starts:
-        given = [flow.roles[agent].hosts, *(flow.names(agent, each) for each in control.arguments)]
-        ranges = [_entities(setting, each) for each in given]
-    else:
-        ranges = [tuple(sorted(setting.kinds))] * (1 + len(control.arguments))
-    make = setting.program.reactions.get(control.name)  # a rule with a mistake, which is reported, makes none
-    if make is None or prod(map(len, ranges)) > MOST_ARGUMENTS:
-        yield None
-        return
-    for host, *names in product(*ranges):
-        with suppress(Fault):  # the command may reject some names
-            reaction = make(host, *names)
-            assert isinstance(reaction, Reaction)
-            yield reaction
-
-
-def _entities(setting: Setting, names: Abstract) -> tuple[Name, ...]:
-    """Return the entities among abstract names, sorted."""
-    if names.anything:
-        return tuple(sorted(setting.kinds))
-    return tuple(
-        sorted(name for name, kind in setting.kinds.items() if name in names.words or kind in names.kinds)
-    )
+            found = flow.reactions(agent, statement)
+            yield from (None,) if found is None else found
 
 
 def _moves(setting: Setting, agent: Name, reaction: Reaction | None) -> Iterator[PossibleMove]:

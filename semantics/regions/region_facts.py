@@ -1,10 +1,11 @@
 """Facts that regions need: all that may ever happen to each entity, from a mission's text."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
 from physical import EntityMotion, Ways
+from semantics.fixpoints import closure
 from semantics.state.signature import Name
 
 
@@ -30,14 +31,4 @@ class RegionFacts:
 
     def bearers(self, entity: Name) -> frozenset[Name]:
         """Return an entity with all that may carry it, at any depth."""
-        return reached(entity, lambda name: self.motions[name].carriers)
-
-
-def reached(start: Name, lead: Callable[[Name], frozenset[Name]]) -> frozenset[Name]:
-    """Return the names that a name leads to, at any depth, with itself."""
-    seen, waiting = {start}, [start]
-    while waiting:
-        more = lead(waiting.pop()) - seen
-        seen |= more
-        waiting += sorted(more)
-    return frozenset(seen)
+        return closure([entity], lambda name: self.motions[name].carriers)

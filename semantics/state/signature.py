@@ -5,6 +5,8 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Final, Self
 
+from semantics.fixpoints import closure
+
 Name = str
 """A symbol of logical space: a node, a channel or an agent."""
 
@@ -49,14 +51,11 @@ class Signature:
 
     def within(self, kind: str, *, directly: bool = False) -> frozenset[str]:
         """Return the kinds that may be inside one: its possible children, and unless `directly` their descendants."""
-        found: set[str] = set()
-        waiting = [kind]
-        while waiting:
-            here = self[waiting.pop()]
-            inside = (here.contains | here.carries) - found
-            found |= inside
-            waiting += [] if directly else inside
-        return frozenset(found)
+
+        def inside(around: str) -> frozenset[str]:
+            return self[around].contains | self[around].carries
+
+        return inside(kind) if directly else closure(inside(kind), inside)
 
     @staticmethod
     def of(kinds: Iterable[Kind]) -> "Signature":

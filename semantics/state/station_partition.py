@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 
 from semantics.admission.parcel_refusals import may_be_hosted, text_objection
-from semantics.admission.value_flow import flow_of
+from semantics.analysis.value_flow import flow_of
 from semantics.behaviours.process_conversion import joining
 from semantics.environment import Says
 from semantics.state.agents import code_cell, host_cell, mailbox_cell, store_cell

@@ -19,6 +19,8 @@ from semantics.behaviours.reaction_rules import moved
 from semantics.brr_driver import stops
 from semantics.control import commits
 from semantics.environment import Drifts
+from semantics.fixpoints import closure
+from semantics.regions.possible_moves import may_move
 from semantics.state.cell_values import VOYAGE, Cell, Changes
 from semantics.state.configuration import Configuration, Transition
 from semantics.state.eta import line_cell
@@ -79,11 +81,9 @@ def _remembered(setting: Setting) -> tuple[Name, ...]:
 
 def _drifting_cargo(setting: Setting) -> Iterator[Name]:
     """Yield the entities that may be aboard an entity that drifts within a place."""
-    waiting, kinds = [setting.kind(each.entity) for each in _adrift(setting)], set[str]()
-    while waiting:
-        more = setting.signature[waiting.pop()].carries - kinds
-        kinds |= more
-        waiting += more
+    drifting = {setting.kind(each.entity) for each in _adrift(setting)}
+    first = (cargo for kind in drifting for cargo in setting.signature[kind].carries)
+    kinds = closure(first, lambda kind: setting.signature[kind].carries)
     return (name for name, kind in setting.kinds.items() if kind in kinds)
 
 
@@ -225,9 +225,9 @@ def _chain(c: Configuration, vehicle: Name) -> Iterator[tuple[Name, tuple[FLY, t
 
 
 def _flights_of(c: Configuration, vehicle: Name) -> Iterator[FLY]:
-    """Yield the requests by which a vehicle is in transit."""
+    """Yield the requests by which a vehicle is in transit; only lines that may have some are read."""
     for a in c.alpha.names():
-        if c.test(line_cell(a), flies, vehicle):
+        if may_move(c.setting, a, vehicle) and c.test(line_cell(a), flies, vehicle):
             yield from (each for each in c.read(line_cell(a)) if flies((each,), vehicle))
 
 

@@ -6,11 +6,13 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
+from semantics.analysis.traversal import reachable
+from semantics.analysis.unpaced_loops import unpaced
 from semantics.behaviours.commands import COMMANDS
 from semantics.behaviours.expressions import Expression, Literal
-from semantics.behaviours.program import Behaviour, Program, reachable
+from semantics.behaviours.program import Behaviour, Program
 from semantics.behaviours.statements import Block, Loop
-from semantics.behaviours.unpaced_loops import unpaced
+from semantics.fixpoints import closure
 from specs import syntax as s
 from specs.codes import Code
 from specs.elaboration.initial_actors import InitialActor
@@ -220,14 +222,13 @@ def _components(graph: Mapping[str, Iterable[str]]) -> dict[str, int]:
 
 def _outermost(bodies: Bodies) -> Iterator[int]:
     """Yield the loops at the top of a bigActor, or of a behaviour that is only called at the end of its callers."""
-    inner = {call.behaviour for body in bodies.all() for call in body.calls if not call.top}
-    while True:
-        nested = {
-            c.behaviour for name in inner & bodies.behaviours.keys() for c in bodies.behaviours[name].calls
-        }
-        if nested <= inner:
-            break
-        inner |= nested
+    first = (call.behaviour for body in bodies.all() for call in body.calls if not call.top)
+    inner = closure(
+        first,
+        lambda name: (
+            [c.behaviour for c in bodies.behaviours[name].calls] if name in bodies.behaviours else []
+        ),
+    )
     for body in bodies.all():
         if body.is_agent or body.name not in inner:
             yield from body.loops

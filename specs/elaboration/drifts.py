@@ -9,6 +9,7 @@ from typing import Final
 from physical import DriftWithin, Geometry, PhysicalError, band_contains, drift_faces, face_at
 from physical.placement import still
 from semantics.environment import Drifts
+from semantics.fixpoints import closure
 from semantics.state.physical_model import Carried, Placed
 from specs import syntax as s
 from specs.codes import Code
@@ -182,11 +183,8 @@ def _containers(entity: str, names: Names) -> list[str]:
 
 def _cargo(entity: str, names: Names, mobility: Mobility) -> list[str]:
     """Return the entities that may ever be aboard an entity, at any depth, or on their way to it."""
-    aboard, waiting = set[str](), [names.kinds[entity]]
-    while waiting:
-        more = names.signature[waiting.pop()].carries - aboard
-        aboard |= more
-        waiting += more
+    signature = names.signature
+    aboard = closure(signature[names.kinds[entity]].carries, lambda kind: signature[kind].carries)
     return [
         name
         for name, kind in sorted(names.kinds.items())

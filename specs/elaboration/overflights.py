@@ -12,14 +12,14 @@ from typing import TypeVar
 
 from physical import Geometry
 from physical.extents import extent, least_distance, span
-from semantics.behaviours.program import reachable
+from semantics.analysis.traversal import reachable
 from semantics.behaviours.statements import ControlBy
 from semantics.environment import Appears, Drifts
 from semantics.properties.kinds import PropertyKind
 from semantics.properties.property import Property
 from semantics.properties.propositions import And, Inside, Not, Or, Proposition
 from semantics.properties.region_atoms import PossiblyIn
-from semantics.races.relevance import hosts_of, instances
+from semantics.races.relevance import hosts_of, requested
 from semantics.state.configuration import Configuration
 from semantics.state.physical_model import Carried
 from semantics.state.setting import Setting
@@ -124,7 +124,7 @@ def _legs(c: Configuration) -> Iterator[Leg]:
         for number in sorted(reachable(program, c.alpha.code(agent))):
             statement = program.statements[number]
             if isinstance(statement, ControlBy):
-                for reaction in instances(c.setting, statement, hosts_of(c, agent)) or ():
+                for reaction in requested(c.setting, statement, hosts_of(c, agent)) or ():
                     for node, place in reaction.moves:
                         if isinstance(node, str) and isinstance(place, str):
                             yield node, (*reaction.via, place)

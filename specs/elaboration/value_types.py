@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import Final
 
+from semantics.analysis.traversal import Origin, bindings
 from semantics.behaviours.expressions import (
     Apply,
     Expression,
@@ -22,18 +23,7 @@ from semantics.behaviours.expressions import (
 from semantics.behaviours.observations import Observation
 from semantics.behaviours.patterns import Anything, Elements, Exactly, Pattern
 from semantics.behaviours.program import Program
-from semantics.behaviours.statements import (
-    Assign,
-    Call,
-    ChooseFrom,
-    For,
-    ForEach,
-    Match,
-    React,
-    Send,
-    Spawn,
-    Statement,
-)
+from semantics.behaviours.statements import Send, Statement
 from semantics.behaviours.values import Route, Text, Truth, Value, within
 
 MISTAKEN: Final = Literal("")
@@ -127,6 +117,7 @@ _SORT_OF: Final[Mapping[type, ValueSort]] = {
     Observation: ValueSort.OBSERVATION,
 }
 
+_TUPLE: Final = Sorts({ValueSort.TUPLE})
 ANY: Final = of(*ValueSort)
 NOTHING: Final = Type(Sorts())
 Types = Mapping[str, Type]
@@ -134,7 +125,9 @@ Types = Mapping[str, Type]
 
 @dataclass(frozen=True)
 class Inference:
-    """The type inference of a mission.
+    """The type inference of a mission: for each variable one type, from the whole text, unreachable statements too.
+
+    `semantics.analysis.value_flow` is finer, and needs a text without mistakes.
 
     Attributes:
         program: The program of the bigActors.
@@ -174,28 +167,10 @@ class Inference:
         self, statement: Statement, known: Types, messages: Type | None = None
     ) -> Iterator[tuple[str, Type]]:
         """Yield the variables that a statement assigns, with the types."""
-        match statement:
-            case Assign(variable, expression):
-                yield variable, self.type(expression, known)
-            case Call(behaviour, arguments) | Spawn(_, _, behaviour, arguments):
-                called = self.program.behaviours.get(behaviour)
-                parameters = () if called is None else called.parameters
-                for parameter, argument in zip(parameters, arguments, strict=False):
-                    yield parameter, self.type(argument, known)
-            case For(members, _, each):
-                following = self.program.statements[each]
-                if isinstance(following, ForEach):
-                    yield following.variable, of(*members_of(self.type(members, known)))
-            case ChooseFrom(variable, members, _):
-                yield variable, of(*members_of(self.type(members, known)))
-            case React(cases):
-                received = (ANY if messages is None else messages) | of(ValueSort.OBSERVATION)
-                for case in cases:
-                    yield from bound(case.pattern, received)
-            case Match(value, cases):
-                subject = self.type(value, known)
-                for case in cases:
-                    yield from bound(case.pattern, subject)
+        received = (ANY if messages is None else messages) | of(ValueSort.OBSERVATION)
+        for each in bindings(self.program, statement):
+            value = received if each.expression is None else self.type(each.expression, known)
+            yield from bound(each.pattern, _part_of(value, each.origin))
 
     def constant(self, value: Value) -> Type:
         """Return the type of a constant."""
@@ -243,6 +218,17 @@ class Inference:
 
 def _tag(value: Value) -> Tag:
     return value if isinstance(value, Text | str) else None
+
+
+def _part_of(value: Type, origin: Origin) -> Type:
+    """Return the type that a statement binds; the rest of a loop is a tuple of unknown length."""
+    match origin:
+        case Origin.MEMBERS:
+            return Type(_TUPLE, members_of(value), None)
+        case Origin.MEMBER:
+            return of(*(value.members if value.sorts == _TUPLE else members_of(value)))
+        case _:
+            return value
 
 
 def members_of(collection: Type) -> Sorts:

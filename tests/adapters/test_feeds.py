@@ -18,8 +18,7 @@ from scale import examples
 from worlds import DATA, World, answering, running, simulated, until
 
 from adapters import location_feed, web
-from adapters.ais import AisFeed
-from adapters.lines import MAX_LINE, Lines
+from adapters.ais import MAX_LINE, AisFeed, Lines
 from adapters.location_feed import LocationService
 from adapters.naming import NamingService
 from adapters.plugin import Aged, Trouble

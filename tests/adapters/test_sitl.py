@@ -11,6 +11,7 @@ from worlds import AREA, HOME, ROUND, until
 
 from adapters.camera.poses import PoseLog
 from adapters.live.operator_socket import give_back, order
+from adapters.live.run_watchers import Watcher
 from adapters.mavlink import Craft
 from adapters.mavlink.command import long, set_parameter
 from adapters.mavlink.constants import Cmd
@@ -174,17 +175,11 @@ def flown_by_run(mission, model, tmp_path, foe=None, seconds=1200):
         return *run(fly_it(), SPEED), seen
 
 
-class Seen:
+class Seen(Watcher):
     """What a run has come to."""
 
     def __init__(self):
         self.rules, self.findings = [], []
-
-    def arrived(self, heard, now):
-        pass
-
-    def reported(self, report, now):
-        pass
 
     def turned(self, turn, _now):
         self.rules += [step.transition.label.rule for step in turn.steps]

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 from scripts import script
 
-from checker import Engine, check, explore
+from checker import Engine, ZoneClock, check, explore
 from semantics.properties.property import watching
 from specs import parse_bytes
 from specs.elaboration import elaborate
@@ -37,10 +37,51 @@ def test_others_learn_nothing_anew_of_a_queue_that_all_share(tmp_path):
 
 
 def test_half_of_the_zones_are_there_for_the_sake_of_batteries(tmp_path):
-    start = timed.explored(timed_family.text(3, 1, scheduler="program_order"), tmp_path)
-    other = explore(watching(start.times.initial, ()), engine=Engine.FAST)
+    text, clock = timed_family.text(3, 1, scheduler="program_order"), ZoneClock.GLOBAL
+    start = timed.explored(text, tmp_path, clock=clock)
+    other = explore(watching(start.times.initial, ()), engine=Engine.FAST, clock=clock)
     assert (start.size, start.times.search.count) == (1044, 5527)
     assert (other.size, other.times.search.count) == (1044, 3111)
+
+
+@pytest.mark.parametrize(("uavs", "places", "zones"), [(2, 3, 365), (3, 1, 1044), (3, 3, 6017)])
+def test_in_local_time_each_configuration_of_independent_uavs_has_one_zone(uavs, places, zones, tmp_path):
+    found = timed.explored(timed_family.text(uavs, places, scheduler="program_order"), tmp_path)
+    assert (found.size, found.times.search.count) == (zones, zones)
+
+
+def test_a_rule_reads_no_lines_of_agents_that_do_not_fly_its_vehicle(tmp_path):
+    found = timed.explored(timed_family.text(2, 1, scheduler="program_order"), tmp_path)
+    learner = found.times.network.learner
+    for number, label in learner.steps.items():
+        if label.rule == "command":
+            trees = learner.leaves.parts_of(number)
+            asked = {
+                ask.cell for tree in trees if tree in learner.writing_trees for ask in asks_of(learner, tree)
+            }
+            assert ("line", f"patrol{1 - int(label.agent[-1])}") not in asked
+
+
+def asks_of(learner, tree):
+    """Return the questions of a tree."""
+    waiting, found = [int(learner.trees.root.room[tree])], []
+    while waiting:
+        node = waiting.pop() - 1
+        if node >= 0:
+            _, width, base = learner.trees.window(node)
+            found.append(learner.trees.asks[node])
+            waiting += learner.trees.next.room[base : base + width].tolist()
+    return found
+
+
+@pytest.mark.parametrize(("most", "outcome"), [(37, "holds"), (36, "violated")])
+def test_a_deadline_flips_at_the_same_moment_in_local_time(most, outcome):
+    text = timed_family.text(2, 1, scheduler="program_order").replace("within 2 h", f"within {10 * most} s")
+    source, tree = parse_bytes("timed.mission", text.encode())
+    mission = elaborate(tree, source, Path())
+    reports = [check(mission, engine=Engine.FAST, clock=clock) for clock in ZoneClock]
+    assert [each.verdicts["there0"].outcome.value for each in reports] == [outcome] * 2
+    assert reports[0].verdicts == reports[1].verdicts
 
 
 def test_processes_of_a_network_share_no_names(tmp_path):

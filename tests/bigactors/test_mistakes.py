@@ -20,8 +20,7 @@ check --watch oil_spil  # oil_spil: there is no such file\n  hint: did you mean 
 check .  # .: this is a folder, not a mission
 check --watch --json - holds.mission  # --watch prints its reports
 check --trace race.mission holds.mission  # race.mission: there is a file where a folder should be
-check race.mission --engine ray --reduce por  # the ray explorer does not reduce
-check race.mission --engine reference --paranoid 1  # --paranoid works with the fast engine and with reductions only
+check race.mission --engine reference --paranoid 1  # --paranoid works with the fast and Ray engines
 check race.mission --engine reference --checkpoint there  # --checkpoint works with the fast and Ray engines only
 check race.mission --hash-compact 32  # it is gone, since a configuration takes some 24 bytes: --max-memory
 check race.mission --spill there  # --spill needs a limit on memory

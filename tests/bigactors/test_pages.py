@@ -252,7 +252,9 @@ def test_in_a_clone_without_the_parts_of_npm_the_page_has_its_story_and_its_lane
     page = trace_page(Story("race", "", True, race, len(race), causes_of(race)))
     assert page.count("<script") == 1
     texts = " ".join(Reader(page).texts)
-    assert all(words in texts for words in ("acts on what it saw", "sensed", "changed", "acted", "req_ctr"))
+    assert all(
+        words in texts for words in ("acts on what lookout saw", "sensed", "changed", "acted", "req_ctr")
+    )
 
 
 # --- the steps of a race --------------------------------------------------------------------------------------

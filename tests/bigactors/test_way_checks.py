@@ -3,7 +3,7 @@
 from bigactors.arguments import parse_arguments
 from bigactors.cli import main
 from bigactors.commands.run.flight import prepare
-from bigactors.commands.run.way_checks import check_ways, unseen, unwatched
+from bigactors.commands.run.preflight_checks import check_ways, unseen, unwatched
 
 MISSION = """
 mission ways

@@ -235,20 +235,20 @@ class App {
     if (!this.store.section("vehicles").has(name) || this.tab.value !== "vehicles") this.showTab("map");
   };
   otherSound = () => this.sound.wanted.set(this.sound.wanted.value === "on" ? "off" : "on");
-  focusCard = () => {
-    this.showTab("vehicles");
-    requestAnimationFrame(() => document.querySelector(".fleet:has(.card.chosen) .name, .card.chosen .name, .fleet .name, .card .name")?.focus());
-  };
-  focusMap = () => {
-    this.showTab("map");
-    requestAnimationFrame(() => document.querySelector("#map .leaflet-container")?.focus());
-  };
-  focusFind = () => {
-    this.showTab("map");
-    const focus = () => document.getElementById("find")?.focus(); // at once if it is visible: the next key is the text's
-    focus();
-    requestAnimationFrame(focus);
-  };
+  focusCard = () => this.#focus("vehicles", ".fleet:has(.card.chosen) .name, .card.chosen .name, .fleet .name, .card .name");
+  focusMap = () => this.#focus("map", "#map .leaflet-container");
+  focusFind = () => this.#focus("map", "#find");
+  /** Focus a part of a tab: at once if it is visible, since the next key is meant for it, else when the tab is drawn. */
+  #focus(tab, selector) {
+    this.showTab(tab);
+    const focus = () => {
+      const part = document.querySelector(selector);
+      part?.focus();
+      return document.activeElement === part;
+    };
+    const before = document.activeElement;
+    if (!focus()) requestAnimationFrame(() => [before, document.body].includes(document.activeElement) && focus()); // unless the user went elsewhere
+  }
   showTab = (key) => this.tab.set(key);
   escape = () => {
     const unfolded = [...document.querySelectorAll("details.verdict[open], details.map-legend[open], details.targets[open]")];

@@ -32,9 +32,12 @@ export function Find({ app }) {
   const [at, setAt] = useState(0);
   const input = useRef(null);
   const found = matches(app.store, text);
-  const leave = () => {
+  const clear = () => {
+    input.current.value = "";
     setText("");
-    setAt(0);
+  };
+  const leave = () => {
+    clear();
     input.current.blur();
   };
   const go = (match, typed) => {
@@ -60,7 +63,7 @@ export function Find({ app }) {
   return html`<form class="find" role="search" onSubmit=${submit}>
     <input id="find" ref=${input} role="combobox" aria-label="find a vehicle, MMSI, place or event" aria-expanded=${String(found.length > 0)} aria-controls="found" aria-autocomplete="list"
       aria-activedescendant=${found.length ? `found-${at}` : undefined} placeholder="Find  /" title="find a vehicle, MMSI, place or event  /" autocomplete="off" spellcheck=${false}
-      value=${text} onInput=${(event) => setText(event.currentTarget.value)} onKeyDown=${keys} onBlur=${(event) => event.relatedTarget?.closest?.("#found") || setText("")} />
+      onInput=${(event) => setText(event.currentTarget.value)} onKeyDown=${keys} onBlur=${(event) => event.relatedTarget?.closest?.("#found") || clear()} />
     <ul id="found" role="listbox" aria-label="What was found" hidden=${found.length === 0}>${found.map((match, n) => html`<li key=${match.key} id=${`found-${n}`} role="option" aria-selected=${String(n === at)}
       onPointerDown=${(event) => event.preventDefault()} onClick=${() => go(match)}>${match.time === undefined ? "" : html`<time>${utc(match.time)}</time> `}<b>${match.words}</b> <span class="quiet">${match.kind}</span></li>`)}</ul>
   </form>`;

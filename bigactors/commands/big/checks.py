@@ -7,7 +7,7 @@ from itertools import islice, pairwise
 from math import isfinite
 from typing import Any, Final
 
-from bigactors.commands.big.states import state_text
+from bigactors.commands.big.output import state_text
 from bigactors.exits import Exit
 from bigactors.mistakes import Mistake
 from bigactors.terminal import paint

@@ -1,13 +1,71 @@
-"""The output files of `bigactors big`."""
+"""The output of `bigactors big`: files, states as lines of text, and the folders of long searches."""
 
 from argparse import Namespace
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
-from bigactors.files import check_writable, json_text, write_json, write_text
+from bigactors.files import check_writable, json_text, make_folder, write_json, write_text
+from bigactors.mistakes import Mistake
 from bigactors.terminal import say_text
+from bigraphs import Bigraph, BigraphError
+from bigraphs.notation import write_big
+from bigraphs.signature import Signature
 from bigraphs.transitions import TransitionSystem
+from physical.wordings import counted
+
+LONG: Final = 300
+"""The number of characters beyond which a state is replaced by its size, unless it is the requested output."""
+
+
+def state_text(bigraph: Bigraph) -> str:
+    """Return a state in the notation of `.big`, with named nodes as in `.bgm` files: `u0_UAV`.
+
+    A state that nests too deeply for the notation gives its size.
+    """
+    named = {f"{node.name}_{node.control}": node for node in bigraph.nodes if node.name is not None}
+    controls = [replace(bigraph.signature[node.control], name=label) for label, node in named.items()]
+    nodes = [
+        node if node.name is None else replace(node, control=f"{node.name}_{node.control}", name=None)
+        for node in bigraph.nodes
+    ]
+    signature = Signature((*bigraph.signature.controls, *controls))
+    try:
+        return write_big(replace(bigraph, signature=signature, nodes=tuple(nodes)))
+    except BigraphError:
+        return _size(bigraph)
+
+
+def state_line(bigraph: Bigraph) -> str:
+    """Return a state in its notation if that is short, else its size."""
+    written = state_text(bigraph)
+    return written if len(written) <= LONG else f"{_size(bigraph)}; 'bigactors big show' prints it"
+
+
+def _size(bigraph: Bigraph) -> str:
+    kinds = len({node.control for node in bigraph.nodes})
+    nodes = f"{counted(len(bigraph.nodes), 'node')} of {counted(kinds, 'control')}"
+    links = f"{counted(bigraph.edges, 'edge')}, {counted(len(bigraph.outer_names), 'name')}"
+    return f"{nodes} in {counted(bigraph.regions, 'region')}, {links}"
+
+
+def checkpoint_folder(options: Namespace) -> str | None:
+    """Return the folder for checkpoints; raises Mistake for --resume without one."""
+    if options.resume and options.checkpoint is None:
+        raise Mistake("--resume goes on from a checkpoint", "give its folder: --checkpoint DIR")
+    folder: str | None = options.checkpoint
+    return folder
+
+
+def spill_folder(options: Namespace) -> str | None:
+    """Return the folder for --spill, which it makes; raises Mistake without a limit on memory."""
+    folder: str | None = options.spill
+    if folder is not None:
+        if options.max_memory is None:
+            raise Mistake("--spill needs a limit on memory", "give it: --max-memory SIZE")
+        make_folder(folder)
+    return folder
 
 
 def check_outputs(options: Namespace) -> None:

@@ -8,10 +8,16 @@ from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
-from bigactors.commands.big.output import check_outputs, write_data, write_outputs
-from bigactors.commands.big.states import state_line, state_text
+from bigactors.commands.big.output import (
+    check_outputs,
+    checkpoint_folder,
+    spill_folder,
+    state_line,
+    state_text,
+    write_data,
+    write_outputs,
+)
 from bigactors.exits import Exit, worst
-from bigactors.long_runs import checkpoint_folder, spill_folder
 from bigactors.mistakes import Mistake
 from bigactors.progress import Watch, watching
 from bigactors.terminal import is_terminal, say, tell

@@ -1,4 +1,4 @@
-"""A check: the exploration, the printed report, and the written files."""
+"""A check: its settings, the exploration, the printed report, and the written files."""
 
 from __future__ import annotations
 
@@ -12,17 +12,18 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from bigactors.check_outputs import Output, cautions_of, outputs_of, write_outputs
-from bigactors.checking import Checked, FailedMission, check_missions
-from bigactors.commands.check.settings import settings_of
+from bigactors.checking import Checked, FailedMission, How, check_missions
 from bigactors.exits import Exit, worst
 from bigactors.files import check_writable, file_stem, make_folder, write_json
 from bigactors.mission_lookup import variation_of
 from bigactors.mistakes import Mistake
 from bigactors.terminal import paint, say, tell
-from checker import Interruption, report_text
+from checker import Cluster, CombinationError, Engine, Interruption, Keeping, Limits, Reduction, report_text
 from checker.check import reductions_of
+from checker.engines.capabilities import engines, features
+from checker.engines.contract import ZoneClock
 from checker.engines.fast.numba_loading import ALONE
-from checker.limits import Stop
+from checker.limits import MOST_PENDING, Stop
 from checker.reports.report import MARKS, SCREEN, coverage_text
 from checker.reports.results import Issue, caution_text
 from checker.verdicts import Outcome, Report
@@ -33,6 +34,68 @@ from specs.codes import Code
 if TYPE_CHECKING:
     from bigactors.signatures import SigningKey
     from specs.elaboration import ElaboratedMission
+
+
+MOST, MOST_OF_REFERENCE = 100_000_000, 2_000_000
+"""The most configurations visited. Those of the reference explorer take a thousand bytes each."""
+
+
+def settings_of(options: Namespace) -> tuple[Limits, How]:
+    """Return the limits of the exploration and the way in which missions are explored.
+
+    Raises:
+        Mistake: Two options do not work together.
+    """
+    limits, how = _limits_of(options), _how_of(options)
+    asked = features(limits, how.keeping, how.reduce, cluster=how.cluster, threads=how.threads, ways=how.ways)
+    try:
+        engines(asked, how.engine)
+    except CombinationError as unmet:
+        raise Mistake(str(unmet), unmet.remedy) from unmet
+    if limits.spill is not None:
+        make_folder(limits.spill)
+    return limits, how
+
+
+def _how_of(options: Namespace) -> How:
+    return How(
+        options.engine and Engine(options.engine),
+        options.violations,
+        tuple(map(Reduction, options.reduce or ())),
+        _keeping_of(options),
+        _cluster_of(options),
+        options.threads,
+        ZoneClock(options.clock),
+        options.times,
+        options.ways,
+        any(name == "geojson" for name, _ in options.output),
+    )
+
+
+def _limits_of(options: Namespace) -> Limits:
+    usual = MOST_OF_REFERENCE if options.engine == "reference" else MOST
+    return Limits(
+        options.max_configurations or usual * (options.workers or 1),
+        options.max_time,
+        pending=options.max_pending or MOST_PENDING,
+        memory=options.max_memory,
+        spill=options.spill,
+    )
+
+
+def _cluster_of(options: Namespace) -> Cluster | None:
+    """Return the workers of the exploration; None without any option of them."""
+    if options.workers is None and options.address is None:
+        return None
+    return Cluster(options.workers or Cluster().workers, options.address)
+
+
+def _keeping_of(options: Namespace) -> Keeping | None:
+    """Return the options on checkpoints and re-checking; None without any."""
+    if options.checkpoint is None and options.paranoid is None and not options.resume:
+        return None
+    return Keeping(options.checkpoint, options.resume, every=options.every, doubted=options.paranoid or 0)
+
 
 COLOURS = {Outcome.HOLDS: "green", Outcome.VIOLATED: "red", Outcome.INCOMPLETE: "yellow"}
 SIGNS = {MARKS[outcome]: colour for outcome, colour in COLOURS.items()}

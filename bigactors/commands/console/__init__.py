@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import argparse
 import os
 import sys
 from argparse import Namespace
@@ -11,9 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from bigactors import __version__
-from bigactors.arguments.options import add_serving
-from bigactors.arguments.parser import Parser
-from bigactors.arguments.values import named, place
+from bigactors.arguments.options import SERVING
 from bigactors.exits import Exit
 from bigactors.mistakes import Mistake, unreadable
 from bigactors.terminal import say, tell
@@ -36,30 +33,14 @@ EXAMPLES: Final = (
     "bigactors console run.mcap --listen 0.0.0.0:8765 --tls cert.pem key.pem --tiles portimao.pmtiles",
 )
 
-
-def add_arguments(parser: Parser) -> None:
-    """Add the arguments of `bigactors console`."""
-    parser.add_argument("recording", metavar="RECORDING", help="a recording (run --record writes it)")
-    parser.add_argument(
-        "--listen",
-        metavar="[HOST:]PORT",
-        type=place,
-        help="the address and port of the console (default: this machine only, port 8765 or a free one)",
-    )
-    parser.add_argument(
-        "--follow",
-        action="store_true",
-        help="show the newest moment of a recording that a run is still writing",
-    )
-    parser.add_argument(
-        "--socket",
-        metavar="FILE",
-        type=named,
-        help="the run's socket, so that operators can act; needs --follow (default: they only watch)",
-    )
-    # Only for `run --console`: whether the run keeps its recording.
-    parser.add_argument("--beside", choices=["kept", "unkept"], help=argparse.SUPPRESS)
-    add_serving(parser)
+ARGUMENTS: Final = f"""\
+  recording RECORDING  a recording (run --record writes it)
+  --listen [HOST:]PORT  the address and port of the console (default: this machine only, port 8765 or a free one)
+  --follow  show the newest moment of a recording that a run is still writing
+  --socket FILE  the run's socket, so that operators can act; needs --follow (default: they only watch)
+  --beside {{kept,unkept}}
+{SERVING}"""
+"""`--beside`, of which the help is silent, is for `run --console`: whether the run keeps its recording."""
 
 
 AUTOGROUP: Final = Path("/proc/self/autogroup")

@@ -8,9 +8,7 @@ from argparse import Namespace
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Final
 
-from bigactors.arguments.options import add_foreign_names, add_variation
-from bigactors.arguments.parser import Parser
-from bigactors.arguments.values import named, route, seconds
+from bigactors.arguments.options import FOREIGN_NAMES, VARIATION
 from bigactors.exits import Exit
 from bigactors.mistakes import Mistake
 from bigactors.terminal import is_terminal, paint, say, tell
@@ -35,51 +33,24 @@ EXAMPLES: Final = (
     "bigactors replay flight.tlog --mission oil_spill --name mavlink:1=uav0",
 )
 
+ARGUMENTS: Final = f"""\
+  trace TRACE  a trace in JSON (check --trace and simulate write it), or a recording (run --record writes it)
+  --mission FILE  the mission on which the trace is replayed (default: the mission that the trace names)
+  --speed X  print a recording at X times its own speed (default: without pauses)
+{FOREIGN_NAMES}
+  --waypoints VEHICLE=FILE  write the destinations of a vehicle in the trace, with their altitudes, for ground
+      stations: as QGC WPL 110 (.waypoints) or as a plan (.plan); may be repeated
+  --report FILE  write the report of a recorded flight as a page: mission, verdict, vehicles, findings, and who did
+      what
+  --step  wait for Enter before each step
 
-def add_arguments(parser: Parser) -> None:
-    """Add the arguments of `bigactors replay`."""
-    parser.add_argument(
-        "trace",
-        metavar="TRACE",
-        help="a trace in JSON (check --trace and simulate write it), or a recording (run --record writes it)",
-    )
-    parser.add_argument(
-        "--mission",
-        metavar="FILE",
-        type=named,
-        help="the mission on which the trace is replayed (default: the mission that the trace names)",
-    )
-    parser.add_argument(
-        "--speed",
-        metavar="X",
-        type=seconds,
-        help="print a recording at X times its own speed (default: without pauses)",
-    )
-    add_foreign_names(parser)
-    parser.add_argument(
-        "--waypoints",
-        metavar="VEHICLE=FILE",
-        action="append",
-        default=[],
-        type=route,
-        help="write the destinations of a vehicle in the trace, with their altitudes, for ground stations: as "
-        "QGC WPL 110 (.waypoints) or as a plan (.plan); may be repeated",
-    )
-    parser.add_argument(
-        "--report",
-        metavar="FILE",
-        type=named,
-        help="write the report of a recorded flight as a page: mission, verdict, vehicles, findings, and who did what",
-    )
-    parser.add_argument("--step", action="store_true", help="wait for Enter before each step")
-    add_variation(parser)
+{VARIATION}"""
 
 
 def run(options: Namespace) -> Exit:
     """Replay a trace and print it; stop at a step that the rules do not allow."""
-    from bigactors.commands.replay.report_file import write_report
     from bigactors.commands.replay.trace_reader import is_foreign, read_trace
-    from bigactors.commands.replay.waypoint_export import write_route
+    from bigactors.commands.replay.waypoint_export import write_report, write_route
     from bigactors.mission_lookup import variation_of
     from checker import ReplayError, print_loop
     from semantics.state.printing import print_configuration

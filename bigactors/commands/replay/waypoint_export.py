@@ -1,4 +1,4 @@
-"""The waypoints to which a trace sends a vehicle, as a file for ground stations (paper, Example 1)."""
+"""The files of a replay: waypoints for ground stations (paper, Example 1), and the report of a flight as a page."""
 
 from __future__ import annotations
 
@@ -6,8 +6,14 @@ from collections.abc import Iterator
 from itertools import pairwise
 from pathlib import Path
 
+from adapters.console.flight_report import flight_report
+from adapters.console.history import History
+from adapters.recording.recorded_tracks import recorded_tracks
+from adapters.recording.recording_reader import is_recording
+from bigactors.commands.console.recorded_history import rules_of
 from bigactors.files import write_text
 from bigactors.mistakes import Mistake
+from bigactors.terminal import tell
 from bigraphs.notation.spelling import did_you_mean
 from checker import Trace
 from physical import Geometry, MobilityCommand, Waypoint, write_plan, write_waypoints
@@ -66,3 +72,16 @@ def _led_to(way: Realisation, after: Configuration) -> bool:
     physical = after.structure.physical
     under_way = ((physical.placement(node), place) for node, place in way.flying)
     return bool(way.flying) and all(isinstance(at, InTransit) and at.to == to for at, to in under_way)
+
+
+def write_report(path: str, output: str) -> None:
+    """Write the report of a recording; raises Mistake for a trace."""
+    if not is_recording(path):
+        raise Mistake("a report is of a recorded flight", "run --record writes a recording", path)
+    history = History(Path(path), rules_of)
+    while history.read_on(1.0):
+        pass
+    facts = history.facts
+    assert facts.run is not None, "it was replayed before"
+    write_text(output, flight_report(facts, recorded_tracks(Path(path), facts.run.vehicles)))
+    tell(f"report written to {output}")

@@ -11,6 +11,7 @@ from typing import Any
 
 from adapters.addresses import SCHEMES
 from adapters.assigned import Assigned
+from adapters.live.command_planning import is_authority
 from adapters.mavlink.keys import Keeper
 from adapters.mavlink.mavlink_plugin import Autopilot, Listener, Tap
 from adapters.mavlink.signing import Signing
@@ -21,16 +22,14 @@ from adapters.ros import RosVehicles
 from adapters.simulated import Kind, Vehicle
 from adapters.simulated.missing_sensor import MissingSensor
 from adapters.simulated.simulated_link import ADDRESS, SimulatedLink
-from bigactors.commands.run.cameras import cameras_of, poses_for
-from bigactors.commands.run.feeds import feeds_of
+from bigactors.arguments.values import LIVING
+from bigactors.commands.run.feeds import cameras_of, feeds_of, poses_for
 from bigactors.commands.run.geofence import fence_of
-from bigactors.commands.run.option_values import LIVING
 from bigactors.commands.run.station_flight import driven, own_station
 from bigactors.installed_plugins import VEHICLES, make_vehicles, require_known
 from bigactors.mistakes import Mistake
 from bigraphs.notation.spelling import did_you_mean
 from physical import PhysicalError, PhysicalProperty
-from semantics.behaviours.reaction_rules import CONTROL_AUTHORITY
 from semantics.state.physical_model import Placed
 from semantics.state.signature import REGION
 from specs.elaboration import ElaboratedMission
@@ -105,11 +104,11 @@ def _simulated(craft: Craft, word: str, mission: ElaboratedMission, key: Signing
     kinds = {kind.name.lower().replace("_", "-"): kind for kind in Kind}
     if word not in kinds:
         raise Mistake(f"'{word:.40}' is no kind of simulated vehicle", f"there are {', '.join(kinds)}")
-    at = mission.initial.structure.physical.placement(craft.entity)
-    if not isinstance(at, Placed) or not at.geometry.is_point:
+    at = mission.initial.structure.physical.position(craft.entity)
+    if at is None:
         hint = f"place it in the world: {craft.entity}: {craft.kind} = point (37.0, -8.6)"
         raise Mistake(f"'{craft.entity}' stands at no point in the mission, so it has no home", hint)
-    ((latitude, longitude),) = at.geometry.vertices
+    latitude, longitude = at.geometry.vertices[0]
     return Vehicle(kinds[word], (latitude, longitude, GROUND), craft.system or 1, signing=key)
 
 
@@ -185,7 +184,7 @@ def _craft(name: str, system: int | None, mission: ElaboratedMission) -> Craft:
             f"'{name}' is no vehicle: nothing drives its kind {kind}", f"declare it: kind {kind} driven"
         )
     channels = mission.initial.structure.physical.channels(name)
-    return Craft(name, kind, system, tuple(each for each in channels if not _is_authority(each)))
+    return Craft(name, kind, system, tuple(each for each in channels if not is_authority(each)))
 
 
 def _told(options: Namespace, scheme: str, name: str) -> str | None:
@@ -236,7 +235,7 @@ def _stations_of(mission: ElaboratedMission) -> set[str]:
     alpha, kinds = mission.initial.alpha, mission.setting.kinds
     hosts = {alpha.host(agent) for agent in alpha.names()}
     channels = {each for name in kinds for each in mission.initial.structure.physical.channels(name)}
-    named = {channel.partition(":")[2] for channel in channels if _is_authority(channel)}
+    named = {channel.partition(":")[2] for channel in channels if is_authority(channel)}
     return (hosts | named) & mission.fixed
 
 
@@ -263,7 +262,7 @@ def _stations(options: Namespace, mission: ElaboratedMission) -> Stations:
     """Return the stations named by the mission's channels of control authority, with their MAVLink ids."""
     physical = mission.initial.structure.physical
     channels = {
-        each for name in mission.setting.kinds for each in physical.channels(name) if _is_authority(each)
+        each for name in mission.setting.kinds for each in physical.channels(name) if is_authority(each)
     }
     names = sorted(channel.partition(":")[2] for channel in channels)
     given = {name: number for name, number in options.station if number is not None}
@@ -279,7 +278,3 @@ def _stations(options: Namespace, mission: ElaboratedMission) -> Stations:
         return Stations({"this run": 255}, ("this run",), in_mission=False)
     own = own_station(options)
     return Stations(ids, (own,) if own in ids else tuple(ids))
-
-
-def _is_authority(channel: str) -> bool:
-    return channel.partition(":")[0] == CONTROL_AUTHORITY

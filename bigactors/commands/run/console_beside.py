@@ -15,7 +15,6 @@ from tempfile import TemporaryDirectory
 from typing import Final
 
 from bigactors.commands.console import LAST
-from bigactors.commands.run import ANYWHERE
 from bigactors.mistakes import Mistake
 from bigactors.terminal import say, tell
 
@@ -80,7 +79,7 @@ def _line(options: Namespace, recording: Path, socket: Path) -> list[str]:
     kept = "unkept" if options.record is None else "kept"
     line = [sys.executable, "-m", "bigactors", "console", str(recording), "--follow", "--beside", kept]
     line += ["--socket", str(socket)]
-    if options.console != ANYWHERE:
+    if options.console is not True:
         host, port = options.console
         line += ["--listen", f"[{host}]:{port}" if ":" in host else f"{host}:{port}"]
     line += [] if options.tiles is None else ["--tiles", options.tiles]

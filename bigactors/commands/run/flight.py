@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from adapters.live.commanded import Commanded
-from adapters.live.core import obeying, resumed, started
+from adapters.live.core import resumed, started
 from adapters.live.due_times import DueTimes
 from adapters.live.live_state import LiveState
 from adapters.live.loop import Ending, LiveRun, NotAsAssumed, NotHeard, PluginFailed, settle
@@ -30,10 +30,9 @@ from adapters.simulated import run as run_simulated
 from bigactors import __version__
 from bigactors.commands.run.connections import fences_of, plugins_of
 from bigactors.commands.run.console_beside import console_beside, recorded
-from bigactors.commands.run.preflight_checks import check_flyable, check_idle, check_places, get_to_know
-from bigactors.commands.run.starting import Start, StartChecks, stand_by
+from bigactors.commands.run.preflight_checks import check_flyable, watchable
+from bigactors.commands.run.starting import Start, StartChecks, check_start, stand_by
 from bigactors.commands.run.station_flight import Company, company_of, parting_json
-from bigactors.commands.run.way_checks import check_ways, watchable
 from bigactors.exits import Exit
 from bigactors.files import check_writable
 from bigactors.flight_watchers import Log, Tape, Terminal
@@ -322,18 +321,15 @@ async def fly(
         except OSError as error:
             raise Mistake(error.strerror or str(error), "give another with --socket", str(path)) from error
         takes_over = options.take_over or flight.resumed is not None
+        verdict = None if flight.licence is None else len(flight.licence.data.get("properties", ()))
+        before = StartChecks(flight.mission, flight.plugins, verdict, options.wait, takes_over)
         if flight.start.waits:
-            verdict = None if flight.licence is None else len(flight.licence.data.get("properties", ()))
-            before = StartChecks(flight.mission, flight.plugins, verdict, options.wait, takes_over)
             say("the run waits: press Start in the console when its list is done")
             sys.stdout.flush()
             await stand_by(live, flight.start, before, tell_preflight)
         else:
             await live.begin(options.wait, forced=options.unverified)
-            check_idle(live, takes_over=takes_over)
-            await get_to_know(flight.plugins, obeying(flight.plan, live.state))
-            check_places(flight.mission, flight.plugins)
-            check_ways(flight.plan, flight.mission, flight.plugins, live.state.sightings.newest)
+            await check_start(live, before)
         flight.start.begun = True
         settle()
         say(f"{flight.mission.name} begins; bigactors status, say, hold and return reach it at {path}")

@@ -7,31 +7,43 @@ confirms that a vehicle is aboard another, that a load was put down, or that a c
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator
 from contextlib import suppress
-from itertools import islice, product
 
 from adapters.live.command_planning import is_authority
 from adapters.live.core import obeying
+from adapters.live.ground_formulas import MOST_PARTS, about_ways
 from adapters.live.loop import LiveRun
+from adapters.live.plan import Plan
 from adapters.live.surroundings import spots
-from adapters.plugin import Plugin, Preflight, preflights
+from adapters.plugin import Plugin, Preflight, circling, preflights
 from bigactors.commands.run.geofence import placements_of
 from bigactors.mistakes import Mistake
 from bigactors.terminal import tell
-from checker.reduction.overapproximation import Overapproximation
-from checker.reduction.possible_values import Roles
-from semantics.behaviours.expressions import Fault
+from semantics.analysis.overapproximation import Overapproximation
+from semantics.analysis.value_flow import ValueFlow
 from semantics.behaviours.reaction_rules import CONTROL_AUTHORITY, LinkTerm, NodeTerm, PlaceTerm, Reaction
 from semantics.behaviours.statements import ControlBy
+from semantics.properties.kinds import PropertyKind
+from semantics.properties.property import Property, asks_of_regions
+from semantics.properties.propositions import (
+    Ended,
+    Exists,
+    HasPending,
+    HostedAt,
+    IsBound,
+    VariableIs,
+    Waiting,
+    atoms_of,
+)
+from semantics.properties.region_atoms import RegionAtom, operands
+from semantics.state.configuration import Configuration
 from semantics.state.signature import Name
+from semantics.state.station_partition import is_parted
 from specs.elaboration import ElaboratedMission
 
 PATIENCE = 15.0
 """Seconds that a vehicle has to report its parameters."""
-
-MOST_INSTANCES = 5_000
-"""The most instances of a control that are checked."""
 
 Objection = Callable[[Reaction], str]
 """Returns the objection to a control; empty if there is none."""
@@ -127,25 +139,17 @@ def _place(mission: ElaboratedMission, line: int) -> str:
 
 def _controls(mission: ElaboratedMission) -> Iterator[tuple[Name, int, tuple[Reaction, ...]]]:
     """Yield the controls of each agent, with their lines and all possible arguments."""
-    program, roles = mission.setting.program, Roles(Overapproximation(mission.initial))
-    for agent in roles.agents:
-        for number in sorted(roles[agent].statements):
-            statement = program.statements[number]
+    flow = ValueFlow(mission.setting, Overapproximation(mission.initial))
+    for agent in flow.agents:
+        for number in sorted(flow[agent].statements):
+            statement = flow.program.statements[number]
             if isinstance(statement, ControlBy):
-                arguments = (roles.entities(agent, each) for each in statement.arguments)
-                several: tuple[Sequence[Name], ...] = (sorted(roles[agent].hosts), *arguments)
-                found = _instances(mission, program.reactions[statement.name], several)
-                yield agent, program.line(number), tuple(found)
-
-
-def _instances(
-    mission: ElaboratedMission, make: Callable[..., Reaction], several: Iterable[Sequence[Name]]
-) -> Iterator[Reaction]:
-    for chosen in islice(product(*several), MOST_INSTANCES):
-        with suppress(Fault):  # the command refuses some names
-            reaction = make(*chosen)
-            if _may_take(mission, reaction):
-                yield reaction
+                found = flow.reactions(agent, statement) or ()  # of too many, a part shows nothing
+                yield (
+                    agent,
+                    flow.program.line(number),
+                    tuple(each for each in found if _may_take(mission, each)),
+                )
 
 
 def _may_take(mission: ElaboratedMission, reaction: Reaction) -> bool:
@@ -201,3 +205,59 @@ def _kind(mission: ElaboratedMission, term: NodeTerm | PlaceTerm) -> str | None:
     if isinstance(term, str):
         return mission.setting.kinds.get(term)
     return getattr(term, "kind", None)
+
+
+OF_AGENTS = (Ended, Exists, HasPending, HostedAt, IsBound, VariableIs, Waiting)
+"""Atoms about agents, which may run at another station."""
+
+
+def watchable(mission: ElaboratedMission, first: Configuration) -> tuple[Property, ...]:
+    """Return the invariants about ways that a run can watch from its first configuration."""
+    return tuple(each for each in about_ways(*mission.properties) if not _reads_elsewhere(each, first))
+
+
+def _reads_elsewhere(asked: Property, first: Configuration) -> bool:
+    """Return whether a property asks about agents, of which another station may have some."""
+    return is_parted(first) and any(isinstance(atom, OF_AGENTS) for atom in atoms_of(asked.formula))
+
+
+def check_ways(
+    plan: Plan, mission: ElaboratedMission, plugins: tuple[Plugin, ...], seen: Collection[Name]
+) -> None:
+    """Refuse vehicles whose circles are wider than they may stray, and name all that is not watched; raises Mistake."""
+    for vehicle, most in mission.setting.strays.items():
+        for plugin in circling(plugins):
+            across = plugin.circle(vehicle) if plugin.owns(vehicle) else 0.0
+            if across > most:
+                message = f"{vehicle} strays at most {most:g} m, and flies circles of {across:g} m across"
+                hint = "nothing has been commanded; give the mission a wider bound, or the vehicle a smaller circle"
+                raise Mistake(message, hint, mission.source.name)
+    for line in (*unwatched(plan, mission), *unseen(plan, seen)):
+        tell(f"warning: {line}")
+
+
+def unwatched(plan: Plan, mission: ElaboratedMission) -> Iterator[str]:
+    """Yield the mission's assumptions and properties about ways that a run does not watch."""
+    for vehicle in sorted(mission.setting.strays.keys() - plan.vehicles.keys()):
+        yield f"nothing watches that {vehicle} keeps to its way: give --vehicle {vehicle}=..."
+    watched = {each.name for each in plan.invariants}
+    for each in mission.properties:
+        if not asks_of_regions((each,)) or each.kind is PropertyKind.REACHABLE or each.name in watched:
+            continue
+        if each.kind is PropertyKind.INVARIANT and is_parted(plan.first):
+            yield f"'{each.name}' is not watched at this station: it is about agents that other stations may run"
+        elif each.kind is PropertyKind.INVARIANT:
+            yield f"'{each.name}' is not watched: it compares more than {MOST_PARTS:,} pairs"
+        else:
+            yield f"'{each.name}' is not watched: of properties about ways, a run watches invariants only"
+    if is_parted(plan.first) and plan.invariants:
+        yield "the ways of other stations' vehicles count as straight lines to their destinations"
+
+
+def unseen(plan: Plan, seen: Collection[Name]) -> Iterator[str]:
+    """Yield the entities of watched invariants that move and that nothing has reported: they may be anywhere."""
+    for each in plan.invariants:
+        atoms = (atom for atom in atoms_of(each.formula) if isinstance(atom, RegionAtom))
+        names = {name for atom in atoms for name in operands(atom)}
+        for name in sorted(names - plan.fixed - frozenset(seen)):
+            yield f"nothing has reported {name}: until it is seen it may be anywhere, and '{each.name}' counts so"

@@ -11,8 +11,13 @@ from adapters.live.core import obeying
 from adapters.live.loop import LiveRun
 from adapters.live.plan import Plan
 from adapters.plugin import Plugin, Status, preflights
-from bigactors.commands.run.preflight_checks import check_idle, check_places, get_to_know
-from bigactors.commands.run.way_checks import check_ways, unwatched
+from bigactors.commands.run.preflight_checks import (
+    check_idle,
+    check_places,
+    check_ways,
+    get_to_know,
+    unwatched,
+)
 from specs.elaboration import ElaboratedMission
 
 EVERY: Final = 0.25
@@ -75,7 +80,7 @@ class StartChecks:
 
 async def stand_by(live: LiveRun, start: Start, before: StartChecks, tell: Telling | None) -> None:
     """Run the checks, report them to `tell`, and begin when Start is pressed; raises the errors of the checks."""
-    checks = asyncio.create_task(_check(live, before))
+    checks = asyncio.create_task(check_start(live, before))
     forced = before.verdict is None
     begins = asyncio.create_task(live.begin(before.patience, forced=forced, start=start.pressed))
     told: dict[str, Any] | None = None
@@ -100,7 +105,8 @@ async def stand_by(live: LiveRun, start: Start, before: StartChecks, tell: Telli
         await asyncio.gather(checks, begins, return_exceptions=True)
 
 
-async def _check(live: LiveRun, before: StartChecks) -> None:
+async def check_start(live: LiveRun, before: StartChecks) -> None:
+    """Check, once all vehicles are heard, that they may be commanded and that places and ways fit them."""
     while not live.state.sightings.newest.keys() >= live.plan.vehicles.keys():
         await asyncio.sleep(EVERY)
     check_idle(live, takes_over=before.takes_over)

@@ -6,9 +6,7 @@ from argparse import Namespace
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
-from bigactors.arguments.options import MISSION, add_foreign_names, add_variation
-from bigactors.arguments.parser import Parser
-from bigactors.arguments.values import at_least_zero, named
+from bigactors.arguments.options import FOREIGN_NAMES, MISSION, VARIATION
 from bigactors.exits import Exit
 from bigactors.mistakes import Mistake
 from bigactors.terminal import say, tell
@@ -33,61 +31,22 @@ EXAMPLES: Final = (
     "bigactors show oil_spill --trace flight.tlog --name mavlink:1=uav0 --output flight.html",
 )
 
+ARGUMENTS: Final = f"""\
+  file [FILE]  {MISSION}; optional with --trace
+  --output, --out FILE  write a picture (.svg or .png), a page that steps through the whole trace (.html), or the
+      tracks of a trace or recording (.geojson, .gpx or .csv); default: MISSION.svg in this folder
+  --trace TRACE  a trace in JSON (check --trace and simulate write it), a recording (run --record writes it), or a
+      telemetry log (.tlog) or AIS recording, shown in the mission's places
+  --step K  show configuration K of the trace (default: its last)
+  --lanes  print the trace with a lane for each agent, and only the changes of each step; draw only with --output
+  --timeline  explore a mission with timing, print the table of check --times, and draw the earliest and latest
+      times of each flight over all runs (default: MISSION-timeline.svg in this folder)
+  --all  give each step a row (default: repeated steps, such as those of an agent that observes again and again,
+      share one)
+  --against TRACE  print the differences between the trace and this one, and draw nothing
+{FOREIGN_NAMES}
 
-def add_arguments(parser: Parser) -> None:
-    """Add the arguments of `bigactors show`."""
-    parser.add_argument("file", nargs="?", metavar="FILE", help=f"{MISSION}; optional with --trace")
-    parser.add_argument(
-        "--output",
-        "--out",
-        metavar="FILE",
-        type=named,
-        help="write a picture (.svg or .png), a page that steps through the whole trace (.html), or the tracks "
-        "of a trace or recording (.geojson, .gpx or .csv); default: MISSION.svg in this folder",
-    )
-    parser.add_argument(
-        "--trace",
-        metavar="TRACE",
-        type=named,
-        help="a trace in JSON (check --trace and simulate write it), a recording (run --record writes it), or a "
-        "telemetry log (.tlog) or AIS recording, shown in the mission's places",
-    )
-    _add_views(parser)
-    add_foreign_names(parser)
-    add_variation(parser)
-
-
-def _add_views(parser: Parser) -> None:
-    parser.add_argument(
-        "--step",
-        metavar="K",
-        type=at_least_zero,
-        help="show configuration K of the trace (default: its last)",
-    )
-    parser.add_argument(
-        "--lanes",
-        action="store_true",
-        help="print the trace with a lane for each agent, and only the changes of each step; draw only with "
-        "--output",
-    )
-    parser.add_argument(
-        "--timeline",
-        action="store_true",
-        help="explore a mission with timing, print the table of check --times, and draw the earliest and latest "
-        "times of each flight over all runs (default: MISSION-timeline.svg in this folder)",
-    )
-    parser.add_argument(
-        "--all",
-        action="store_true",
-        help="give each step a row (default: repeated steps, such as those of an agent that observes again and "
-        "again, share one)",
-    )
-    parser.add_argument(
-        "--against",
-        metavar="TRACE",
-        type=named,
-        help="print the differences between the trace and this one, and draw nothing",
-    )
+{VARIATION}"""
 
 
 PAGES = (".html", ".htm")

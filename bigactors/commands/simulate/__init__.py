@@ -8,9 +8,7 @@ from collections.abc import Iterator
 from contextlib import suppress
 from typing import TYPE_CHECKING, Final
 
-from bigactors.arguments.options import MISSION, add_variation
-from bigactors.arguments.parser import Parser
-from bigactors.arguments.values import at_least_zero, named
+from bigactors.arguments.options import MISSION, VARIATION
 from bigactors.exits import Exit
 from bigactors.mistakes import Mistake
 from bigactors.terminal import say, say_text, tell
@@ -28,37 +26,15 @@ EXAMPLES: Final = (
     "bigactors simulate oil_spill.mission --choose",
 )
 
+ARGUMENTS: Final = f"""\
+  file FILE  {MISSION}
+  --seed N as at_least_zero = 0  the number that chooses the run; the same seed gives the same run
+  --steps N as at_least_zero = 100  take at most N steps
+  --choose  choose each step: the enabled steps are listed, and your answers are read from standard input (? lists
+      the possible answers)
+  --json FILE  write the run as a trace in JSON; - for standard output, alone
 
-def add_arguments(parser: Parser) -> None:
-    """Add the arguments of `bigactors simulate`."""
-    parser.add_argument("file", metavar="FILE", help=MISSION)
-    parser.add_argument(
-        "--seed",
-        metavar="N",
-        type=at_least_zero,
-        default=0,
-        help="the number that chooses the run; the same seed gives the same run (default: 0)",
-    )
-    parser.add_argument(
-        "--steps",
-        metavar="N",
-        type=at_least_zero,
-        default=100,
-        help="take at most N steps (default: 100)",
-    )
-    parser.add_argument(
-        "--choose",
-        action="store_true",
-        help="choose each step: the enabled steps are listed, and your answers are read from standard input (? "
-        "lists the possible answers)",
-    )
-    parser.add_argument(
-        "--json",
-        metavar="FILE",
-        type=named,
-        help="write the run as a trace in JSON; - for standard output, alone",
-    )
-    add_variation(parser)
+{VARIATION}"""
 
 
 PROMPT = "> "

@@ -89,9 +89,12 @@ export class Editor {
       this.#nameSoon(SETTLES);
       this.options.changed();
     }
-    if (update.docChanged || !update.selectionSet) return;
+    const { all } = update.state.field(names);
+    const arrive = all !== update.startState.field(names).all;
+    if (update.docChanged || !(update.selectionSet || (arrive && this.early))) return;
+    this.early = all.length === 0; // the cursor was put somewhere before the language server knew the names
     const { head } = update.state.selection.main;
-    const found = update.state.field(names).all.find(({ from, to }) => from <= head && head <= to);
+    const found = all.find(({ from, to }) => from <= head && head <= to);
     if (found) this.options.named(update.state.sliceDoc(found.from, found.to));
   }
 

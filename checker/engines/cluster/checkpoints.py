@@ -8,9 +8,10 @@ them once more, until all know all values of their rows.
 from collections import Counter
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from checker.engines.archive import Kinds, read_archive, write_archive
 from checker.engines.cluster import kernel
@@ -21,25 +22,30 @@ from checker.engines.fast import repacking
 from checker.engines.fast.checkpoint import is_time
 from checker.engines.fast.columns import Packing
 from checker.engines.fast.learned_model import CROWDS, CUT, EXPANDED, LIMIT, SIZE
+from checker.engines.fast.origins import Elsewhere
 from checker.engines.fast.row_store import MOST_ROWS
+from checker.engines.fast.rows import Rows
 
-SCHEMA = "bigactors.shard/2"
+SCHEMA = "bigactors.shard/3"
 UNKNOWN = -1
 KEPT = (EXPANDED, SIZE, CUT, CROWDS, LIMIT)
 """The entries of the loops' state in a checkpoint."""
 
 KINDS: Final[Kinds] = {
     "rows": np.uint64,
+    "pieces": np.uint64,
+    "nodes": np.uint64,
     "origins": np.uint64,
     "packing": np.uint64,
     "places": np.uint8,
     "sizes": np.int64,
     "digests": np.uint8,
     "learned": np.int64,
+    "movers": np.uint32,
+    "leads": np.int64,
     "state": np.int64,
 }
 
-BLOCK = 1 << 18
 LATEST = "latest.checkpoint"
 ANOTHER = "this checkpoint is of another mission, variation, limit, version or number of workers"
 
@@ -105,24 +111,34 @@ def save(shard: Shard, folder: Path, number: int, digest: str) -> None:
         "words": store.packing.words,
         "layers": [*shard.begins, shard.end],
         "rules": dict(shard.rules()),
+        "allowed": shard.allowed,
         "happened": sorted(shard.happened_before | happened(shard)),
     }
     arrays = (
-        store.rows.words[: store.size * store.packing.words],
+        store.rows.words[: store.size * store.rows.kept],
+        *store.rows.interned,
         store.rows.origins.kept(store.size),
         store.packing.columns,
         np.frombuffer(b"".join(shard.keys.places), np.uint8),
         np.diff(shard.keys.begins).astype(np.int64),
         shard.keys.digests(),
-        np.array(sorted({row for row, *_ in shard.model.learned}), np.int64),
+        np.array(sorted(shard.learned), np.int64),
+        *_paths(shard),
         store.state[list(KEPT)],
     )
     write_archive(path_of(folder, number, shard.me), head, KINDS, arrays)
 
 
+def _paths(shard: Shard) -> tuple[NDArray[Any], ...]:
+    """Return the movers and the leads of the rows; empty without partial-order reduction."""
+    if shard.choosing is None:
+        return np.zeros(0), np.zeros(0)
+    return shard.choosing.paths.movers.room[: shard.size], shard.paths.leads.room[: shard.size]
+
+
 def happened(shard: Shard) -> set[str]:
     """Return the names of the environment's events that occurred."""
-    taken = np.flatnonzero(shard.expander.counts.used)
+    taken = np.flatnonzero(shard.expander.met.used)
     steps = (shard.model.learner.steps.get(int(step)) for step in taken)
     return {str(label.about) for label in steps if label is not None and label.agent is None}
 
@@ -155,7 +171,10 @@ class Loading:
     def _begin(self) -> None:
         arrays = self.arrays
         self.packing = Packing(self.head["words"], arrays["packing"])
-        self.rows = arrays["rows"]
+        if not self.packing.is_sound:
+            raise ValueError("its rows lack some of its columns")
+        kept = (arrays[each] for each in ("rows", "origins", "pieces", "nodes"))
+        self.rows = Rows.of(Elsewhere, self.packing.words, len(arrays["origins"]), *kept)
         self.learned = arrays["learned"].tolist()
         self.places = [each.tobytes() for each in arrays["places"].reshape(-1, DIGEST)]
         self.digests = [each.tobytes() for each in arrays["digests"].reshape(-1, DIGEST)]
@@ -172,14 +191,18 @@ class Loading:
     def _is_sound(self) -> bool:
         """Return whether rows, columns and values fit together, and mark the values that occur in rows."""
         where, sizes, count = self.packing, self.arrays["sizes"], len(self.arrays["origins"])
-        fits = where.is_sound and len(where.mask) == len(sizes) == len(self.places)
+        fits = len(where.mask) == len(sizes) == len(self.places)
         fits = fits and bool(np.all((sizes > 0) & (sizes <= len(self.digests))))
         fits = fits and int(self.begins[-1]) == len(self.digests)
-        fits = fits and len(self.rows) == count * where.words
         fits = fits and all(0 <= row < count for row in self.learned)
+        if self.shard.choosing is not None:
+            movers, leads = self.arrays["movers"], self.arrays["leads"]
+            fits = fits and len(movers) == len(leads) == count and bool(np.all(leads >= 0))
+            fits = fits and not np.any(movers > len(self.shard.choosing.everyone))
         if not fits or not self._has_come_so_far(count):
             return False
-        return repacking.mark_used(self.rows, where.words, where.columns, self.begins, self.used)
+        known = (where.words, where.columns, self.begins, self.used)
+        return all(repacking.mark_used(words, *known) for _, words in self.rows.blocks(count))
 
     def _has_come_so_far(self, count: int) -> bool:
         """Return whether state, layers and counts are possible in a search."""
@@ -196,6 +219,8 @@ class Loading:
             and cut >= 0
             and min(rules.values(), default=0) >= 0
             and all(isinstance(word, str) for word in happened)
+            and type(self.head["allowed"]) is int
+            and self.head["allowed"] >= sum(rules.values())
         )
 
     def missing(self) -> int:
@@ -228,7 +253,7 @@ class Loading:
     def _relearn(self, row: int) -> bool:
         """Run the rules on a row again if its values are known; return whether they are."""
         shard, where = self.shard, self.packing
-        words = self.rows[row * where.words : (row + 1) * where.words]
+        words = self.rows.row(row)
         old = ((words[where.word] >> where.shift) & where.mask).astype(np.int64)
         codes = self.codes[self.begins[:-1] + old]
         if np.any(codes == UNKNOWN):
@@ -248,26 +273,26 @@ class Loading:
         read = spelling(
             self.packing, np.where(self.codes == UNKNOWN, 0, self.codes), self.begins, self.numbers
         )
-        store.rows.reserve(size)
-        width, hashes = store.packing.words, np.zeros(BLOCK, np.uint64)
-        for first in range(0, size, BLOCK):
-            count = min(BLOCK, size - first)
-            kernel.translate(
-                self.rows,
-                first,
-                count,
-                self.packing.words,
-                read,
-                store.packing.columns,
-                width,
-                store.rows.words[first * width : (first + count) * width],
-                hashes,
-            )
+        shard.look_around()
+        for _, words in self.rows.blocks(size):
+            batch, count = shard.expander.batch, len(words) // self.packing.words
+            where = (store.packing.columns, store.packing.words)
+            kernel.translate(words, 0, count, self.packing.words, read, *where, batch.kept, batch.hashes)
+            store.add(batch, (0, count), shard.model.making)
+            if store.compress():
+                shard.model.see()
+        if store.size != size:
+            raise CheckpointError(f"{self.path}: this checkpoint is damaged: some of its rows are equal")
         store.rows.origins.restore(self.arrays["origins"], size)
         store.state[list(KEPT)] = self.arrays["state"]
         *shard.begins, shard.end = self.head["layers"]
         shard.rules_before = Counter(self.head["rules"])
         shard.happened_before = frozenset(self.head["happened"])
-        shard.model.learned = [(int(row), 0, UNKNOWN, 0) for row in self.arrays["learned"]]
-        shard.expander.counts.used[:] = 0
-        shard.look_around()
+        shard.learned = set(self.arrays["learned"].tolist())
+        shard.allowed_before = self.head["allowed"]
+        shard.expander.counts.used[:] = shard.expander.met.used[:] = 0
+        if shard.choosing is not None:
+            shard.choosing.paths.reserve(store.rows.room)
+            shard.choosing.paths.movers.room[:size] = self.arrays["movers"]
+            shard.paths.leads.grow(store.rows.room)
+            shard.paths.leads.room[:size] = self.arrays["leads"]

@@ -13,13 +13,15 @@ from checker.engines.cluster.rounds import Mark, RoundLimits, kept, mark
 from checker.engines.cluster.shard import Shard, ShardProgress
 from checker.engines.cluster.transfer import RowParcel
 from checker.engines.cluster.worker_links import Links
-from checker.engines.contract import CheckpointError, Inspect
+from checker.engines.contract import CheckpointError, Inspect, sample
+from checker.engines.fast.crosscheck import crosscheck, in_batch
 from checker.engines.fast.learned_model import AT
 from checker.engines.fast.row_graph import actions_of, pending_in_rows
 from checker.engines.fast.row_inspection import inspect_fast, is_still, truths
 from checker.properties.inspections import Invariant
 from checker.properties.invariant_vacuity import asked
 from checker.properties.visited_statements import Visited
+from checker.reduction.reducer import Reduced
 from semantics.properties.propositions import Atom, Proposition, atoms_of
 from semantics.state.cell_values import Row
 from semantics.state.configuration import Configuration, Label
@@ -40,10 +42,18 @@ class Worker:
         links: Its links to the others.
     """
 
-    def __init__(self, initial: Configuration, pending: int, me: int, workers: int, links: Links) -> None:
+    def __init__(
+        self,
+        initial: Configuration,
+        pending: int,
+        me: int,
+        workers: int,
+        links: Links,
+        reduce: Reduced | None = None,
+    ) -> None:
         self.initial = initial
         self.links = links
-        self.shard = Shard(initial, pending, me, workers)
+        self.shard = Shard(initial, pending, me, workers, reduce)
 
     def told(self, news: Any) -> list[Any]:
         """Send the same to all workers, and return the items received from each."""
@@ -69,6 +79,9 @@ class Worker:
                 layer += 1
             before = [each.size for each in marks]
             shard.take(*self.links.exchange(shard.expand(layer, stage.rows)))
+            if shard.choosing is not None:
+                shard.lead_on(self.links)
+                shard.take(*self.links.exchange(shard.parcels()))
             marks = self._marks(is_late=time.monotonic() >= end)
             sizes = [each.size for each in marks]
             if stage.configurations is not None and sum(sizes) > stage.configurations:
@@ -137,9 +150,9 @@ class Worker:
         """Return the worker's progress."""
         return self.shard.standing()
 
-    def summary(self) -> tuple[tuple[int, ...], dict[str, int]]:
-        """Return the boundaries of its layers, and the number of transitions of each rule."""
-        return self.shard.boundaries, dict(self.shard.rules())
+    def summary(self) -> tuple[tuple[int, ...], dict[str, int], int]:
+        """Return the boundaries of its layers, the number of transitions of each rule, and of all enabled ones."""
+        return self.shard.boundaries, dict(self.shard.rules()), self.shard.allowed
 
     def rows(self, numbers: list[int]) -> list[Row]:
         """Return the cells of some configurations."""
@@ -149,6 +162,13 @@ class Worker:
         """Return the worker and the row from which a row was first reached."""
         row, worker = divmod(self.shard.store.origin(row), self.shard.workers)
         return worker, row
+
+    def crosscheck(self, expanded: list[int], doubted: int) -> None:
+        """Check a sample of all workers' expanded rows again, those that are its own (`--paranoid`)."""
+        begin, shard = sum(expanded[: self.shard.me]), self.shard
+        rows = [number - begin for number in sample(sum(expanded), doubted)]
+        mine = [row for row in rows if 0 <= row < shard.expanded]
+        crosscheck(shard.expander, mine, shard.reduce, in_batch)
 
     def inspect(self, inspections: tuple[Inspect, ...]) -> tuple[Inspect, ...]:
         """Return the inspections, with the findings in its rows."""
@@ -203,7 +223,7 @@ class Worker:
         """Return the transitions of a batch; put their targets on other workers into the outbox."""
         shard, batch = self.shard, self.shard.expander.batch
         count = shard.expander.gathered()
-        owners = shard.owners_of(batch.words, batch.origins[:count])
+        owners = shard.owners_of(batch.kept, batch.origins[:count])
         targets = self._found(count)
         others = np.flatnonzero(owners != shard.me)
         shard.send(batch, others, owners[others])

@@ -65,7 +65,9 @@ class Expedition:
         self.options = options
         self.limits = limits = options.limits
         self.keeping = options.keeping
+        self.reduce = options.reduce
         self.digest = f"{options.keeping.digest}, {limits.configurations}, {limits.pending}"
+        self.digest += "" if self.reduce is None else f", {self.reduce.identity}"
         self.folder = self._folder()
         self.latest = self._resumed()
         self.layer = 0
@@ -96,17 +98,21 @@ class Expedition:
     def run(self, inspect: tuple[Inspect, ...]) -> Exploration:
         """Explore all reachable configurations, and collect the findings of inspections."""
         found = CrewRows(self.crew, self.surely, self.initial.setting)
+        if self.keeping.doubted:
+            self.surely(self.crosscheck)
         together = tuple(each for each in inspect if is_mergeable(each))
         parts = self.surely(lambda: self.crew.every("inspect", together))
         summaries = self.surely(lambda: self.crew.every("summary"))
-        found.places = places = Places.of([boundaries for boundaries, _ in summaries])
+        found.places = places = Places.of([boundaries for boundaries, *_ in summaries])
         found.expanded = [standing.expanded for standing in self.standings]
+        found.puts_off = self.reduce is not None and self.reduce.putting_off
+        found.puts_off = found.puts_off and not any(standing.cut for standing in self.standings)
         found.crowded = any(standing.crowded for standing in self.standings)
         for number, inspection in enumerate(together):
             merge(inspection, [part[number] for part in parts], places)
         look_at_each(found, [each for each in inspect if each not in together])
         rules: Counter[str] = Counter()
-        for _, counts in summaries:
+        for _, counts, _ in summaries:
             rules.update(counts)
         return Exploration(
             found.configurations,
@@ -119,8 +125,15 @@ class Expedition:
             time.monotonic() - self.began,
             rule_runs=sum(standing.runs for standing in self.standings),
             survey=CrewSurvey(found),
-            allowed=rules.total(),
+            allowed=sum(allowed for *_, allowed in summaries),
+            reducer=self.reduce,
+            start=self.initial if self.reduce is not None else None,
         )
+
+    def crosscheck(self) -> None:
+        """Check a sample of configurations again."""
+        expanded = [standing.expanded for standing in self.standings]
+        self.crew.every("crosscheck", expanded, self.keeping.doubted)
 
     def surely(self, ask: Callable[[], Answer]) -> Answer:
         """Call the crew after the exploration; if a worker is lost, explore its part again and repeat the call."""

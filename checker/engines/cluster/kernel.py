@@ -13,6 +13,7 @@ from checker.engines.fast.kernel import add_row
 from checker.engines.fast.learned_model import PLACE, SIZE, WORDS, State, SuccessorBatch
 from checker.engines.fast.prefetch import prefetch
 from checker.engines.fast.table import AHEAD, Words, bits_for, entry_of, fetch, find, hashed
+from checker.engines.fast.tree_compression import PAIR, FoldedTable, fold, take, unfold
 
 _ONE, _TWO, _HALF, _TOP = np.uint64(1), np.uint64(2), np.uint64(32), np.uint64(58)
 _PLACE, _WORD = np.uint64(PLACE), np.uint64(WORD)
@@ -77,14 +78,38 @@ def _owner(
 
 
 @njit(cache=True)
-def owners_of(words: Words, origins: State, rows: Words, width: int, own: Owning, owners: Any) -> None:
-    """Note the worker of each row; `origins` are the rows from which they were reached."""
+def owners_of(
+    words: Words, f: FoldedTable | None, origins: State, rows: Words, width: int, own: Owning, owners: Any
+) -> None:
+    """Note the worker of each row; `origins` are the rows from which they were reached, compressed with `f`."""
     wide, last, base = np.uint64(width), np.int64(-1), np.uint64(0)
     for k in range(len(owners)):
-        at = np.uint64(origins[k]) * wide
+        source, at = words, np.uint64(origins[k]) * wide
+        if f is not None:
+            unfold(f, words, origins[k])
+            source, at = f.whole, np.uint64(0)
         if origins[k] != last:
-            last, base = origins[k], key_of(words, at, own)
-        owners[k] = _owner(words, at, rows, np.uint64(k) * wide, width, base, own)
+            last, base = origins[k], key_of(source, at, own)
+        owners[k] = _owner(source, at, rows, np.uint64(k) * wide, width, base, own)
+
+
+@njit(cache=True, forceinline=True)
+def find_plain(
+    words: Words,
+    table: Any,
+    f: FoldedTable | None,
+    batch: SuccessorBatch,
+    k: int,
+    width: int,
+    bits: np.uint32,
+) -> int:
+    """Return what `find` returns for a plain successor; if rows are compressed with `f`, it is, too."""
+    if f is None:
+        return find(words, table, batch.kept, k, batch.hashes[k], width, bits)
+    unfold(f, words, batch.origins[k])
+    if fold(f, take(f, batch.kept, k * width, width, False), False, f.target, 0) < 0:
+        return np.int64(-1)
+    return find(words, table, f.target, 0, hashed(f.target, 0, PAIR), PAIR, bits)
 
 
 @njit(cache=True)
@@ -92,6 +117,7 @@ def deal(
     words: Words,
     origins: Words,
     table: Any,
+    f: FoldedTable | None,
     batch: SuccessorBatch,
     gathered: int,
     own: Owning,
@@ -109,10 +135,12 @@ def deal(
     sent rows, indexed by hash, with a flag before each row. It compares whole rows, so it may forget a row but never
     confuses two.
 
+    If rows are compressed with `f`, this worker's new ones are selected, too, instead of stored.
+
     Returns:
         The number of selected successors.
     """
-    rows, hashes, reached_from = batch.words, batch.hashes, batch.origins
+    rows, hashes, reached_from = batch.kept, batch.hashes, batch.origins
     width, bits = state[WORDS], np.uint32(bits_for(len(table)))
     wide, last_place = np.uint64(width), np.uint64(len(sent) // (width + 1) - 1)
     found, last, base = np.int64(0), np.int64(-1), np.uint64(0)
@@ -121,7 +149,7 @@ def deal(
         if k + AHEAD < gathered:
             prefetch(sent, (hashes[k + AHEAD] & last_place) * (wide + _ONE))
         counts[batch.steps[k]] += 1
-        where = find(words, table, rows, k, hashes[k], width, bits)
+        where = find_plain(words, table, f, batch, k, width, bits)
         if where >= 0:
             continue
         to, lately = np.uint64(k) * wide, (hashes[k] & last_place) * (wide + _ONE)
@@ -130,14 +158,17 @@ def deal(
             same = same and sent[lately + _ONE + j] == rows[to + j]
         if same:
             continue
-        at = np.uint64(reached_from[k]) * wide
+        source, at = words, np.uint64(reached_from[k]) * wide
+        if f is not None:
+            source, at = f.whole, np.uint64(0)
         if reached_from[k] != last:
-            last, base = reached_from[k], key_of(words, at, own)
-        owner = _owner(words, at, rows, to, width, base, own)
+            last, base = reached_from[k], key_of(source, at, own)
+        owner = _owner(source, at, rows, to, width, base, own)
         if owner != me:
             sent[lately] = _ONE
             for j in range(wide):
                 sent[lately + _ONE + j] = rows[to + j]
+        if owner != me or f is not None:
             chosen[found], owners[found] = k, owner
             found += 1
         else:

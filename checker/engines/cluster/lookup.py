@@ -31,6 +31,7 @@ class CrewRows:
         setting: The mission.
         places: The numbering of rows.
         expanded: The number of expanded rows of each worker.
+        puts_off: Whether a transition without a target is one that partial-order reduction does not follow.
         crowded: Whether some rows were not expanded because an agent is crowded.
     """
 
@@ -40,7 +41,7 @@ class CrewRows:
         self.setting = setting
         self.places = Places((), (0,))
         self.expanded: list[int] = []
-        self.crowded = False
+        self.crowded = self.puts_off = False
 
     def one(self, worker: int, method: str, *arguments: Any) -> Any:
         """Return the result of a method of one worker."""
@@ -133,7 +134,8 @@ class CrewSurvey:
         sources, actions, targets = sources[order], actions[order], targets[order]
         there = targets >= 0
         cut_off = self._unfollowed(sources)
-        cut_off[sources[~there]] = True
+        if not found.puts_off:
+            cut_off[sources[~there]] = True
         starts = np.concatenate(([0], np.cumsum(np.bincount(sources[there], minlength=size))))
         return Graph(
             starts.astype(np.int64),

@@ -35,6 +35,7 @@ from checker.engines.contract import (
     MachineError,
     Options,
 )
+from checker.reduction.reducer import Reduced
 from physical.wordings import install_extra
 from semantics.state.configuration import Configuration
 
@@ -43,6 +44,9 @@ PATIENCE = 120.0
 
 STORE = 512 << 20
 """The bytes of the object store of a local cluster: all data in transit at a time."""
+
+Task = tuple[Configuration, int, Reduced | None]
+"""The initial configuration, the limit on pending requests, and the reductions."""
 
 ROOMS = ("bigraphs", "physical", "semantics", "checker")
 
@@ -61,14 +65,13 @@ class RayProcess:
     def __init__(self) -> None:
         self.joined: dict[str, tuple[Worker, Sockets, int]] = {}
 
-    def join(
-        self, crew: str, revived: int, initial: Configuration, pending: int, me: int, workers: int
-    ) -> tuple[str, Address]:
+    def join(self, crew: str, revived: int, task: Task, me: int, workers: int) -> tuple[str, Address]:
         """Join a crew as a worker, unless it is one already; return the digest of the checker and the own address."""
         links = Sockets(load_ray().util.get_node_ip_address())
         known, before, _ = self.joined.get(crew, (None, None, 0))
         if known is None or before is None:
-            known = Worker(initial, pending, me, workers, links)
+            initial, pending, reduce = task
+            known = Worker(initial, pending, me, workers, links, reduce)
         else:
             before.close()
             known.links = links
@@ -117,11 +120,13 @@ class RayCrew:
         revived: The number of revivals so far.
     """
 
-    def __init__(self, initial: Configuration, pending: int, workers: int) -> None:
+    def __init__(
+        self, initial: Configuration, pending: int, workers: int, reduce: Reduced | None = None
+    ) -> None:
         self.ray = load_ray()
         self.name = uuid4().hex
         self.revived = 0
-        self.about = (initial, pending)
+        self.task: Task = (initial, pending, reduce)
         self.actors = processes(self.ray.get_runtime_context().get_node_id(), workers)
         weakref.finalize(self, _leave, self.ray, self.actors, self.name)
 
@@ -188,9 +193,7 @@ class RayCrew:
     def _join(self, worker: int, deadline: float) -> tuple[str, Address]:
         errors = self.ray.exceptions
         while True:
-            reference = self.actors[worker].join.remote(
-                self.name, self.revived, *self.about, worker, self.size
-            )
+            reference = self.actors[worker].join.remote(self.name, self.revived, self.task, worker, self.size)
             try:
                 joined: tuple[str, Address] = self.ray.get(
                     reference, timeout=max(0.0, deadline - time.monotonic())
@@ -309,9 +312,7 @@ def explore_with_ray(initial: Configuration, inspect: tuple[Inspect, ...], optio
     if not 2 <= cluster.workers <= WORKERS_AT_MOST:
         raise ClusterError(f"--engine ray takes 2 to {WORKERS_AT_MOST} workers; one is --engine fast")
     connect(cluster)
-    crew = RayCrew(initial, options.limits.pending, cluster.workers)
-    if keeping.doubted:
-        raise ClusterError("only the fast explorer can be cross-checked: --paranoid goes with --engine fast")
+    crew = RayCrew(initial, options.limits.pending, cluster.workers, options.reduce)
     is_temporary = keeping.folder is None and cluster.address is None
     if is_temporary:
         folder = tempfile.mkdtemp(prefix="bigactors-")

@@ -5,7 +5,7 @@ theirs. The transport of parcels is elsewhere.
 """
 
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
@@ -15,19 +15,27 @@ from numpy.typing import NDArray
 
 from bigraphs.resources import memory_taken
 from checker.engines.cluster import kernel
+from checker.engines.cluster.divided_paths import DividedPaths, ReducedRound, place_of
 from checker.engines.cluster.row_keys import Keys
 from checker.engines.cluster.transfer import ColumnUpdate, Dictionary, RowParcel, SentValues
+from checker.engines.cluster.worker_links import Links
 from checker.engines.fast import repacking
 from checker.engines.fast.columns import WORD, Packing, shifts
 from checker.engines.fast.effects import Deeper, Varies
 from checker.engines.fast.expander import Expander
+from checker.engines.fast.kernel import count as count_steps
 from checker.engines.fast.learned_model import AT, EXPANDED, SIZE, SuccessorBatch
 from checker.engines.fast.learner import Learner
 from checker.engines.fast.origins import Elsewhere
+from checker.engines.fast.row_search import choosing, exchanging
 from checker.engines.fast.row_store import FIRST_ROWS, RowFormat, RowStore
 from checker.engines.fast.row_survey import RowSurvey
 from checker.engines.fast.rule_model import RuleModel
+from checker.reduction.reducer import Reduced
 from semantics.state.configuration import Configuration
+
+HALF, LOW = 32, (1 << 32) - 1
+"""In a parcel, the low half of an origin is the sender's row; with partial-order reduction, the high half the mover."""
 
 SENT = 1 << 17
 """The size of the cache of recently sent rows, which are not sent again."""
@@ -98,13 +106,13 @@ class Outbox:
     def __init__(self, packing: Packing) -> None:
         self.packing = packing
         self.rows: list[NDArray[np.uint64]] = []
-        self.origins: list[NDArray[np.uint32]] = []
+        self.origins: list[NDArray[Any]] = []
         self.owners: list[NDArray[np.int32]] = []
 
-    def add(self, rows: NDArray[np.uint64], origins: NDArray[np.int64], owners: NDArray[np.int32]) -> None:
+    def add(self, rows: NDArray[np.uint64], origins: NDArray[Any], owners: NDArray[np.int32]) -> None:
         """Add rows, one in each line of the array."""
         self.rows.append(rows)
-        self.origins.append(origins.astype(np.uint32))
+        self.origins.append(origins)
         self.owners.append(owners)
 
     def repack(self, new: Packing) -> None:
@@ -116,12 +124,12 @@ class Outbox:
             repacking.repack(flat, len(rows), shifts(old, new), old.words, new.words)
         self.rows, self.packing = packed, new
 
-    def taken_out(self, peer: int) -> tuple[NDArray[np.uint64], NDArray[np.uint32]]:
+    def taken_out(self, peer: int) -> tuple[NDArray[np.uint64], NDArray[Any]]:
         """Return the rows for one worker, in order, with their origins."""
         which = [np.flatnonzero(owners == peer) for owners in self.owners]
         rows = [np.zeros((0, self.packing.words), np.uint64)]
         rows += [each[chosen] for each, chosen in zip(self.rows, which, strict=True)]
-        origins = [np.zeros(0, np.uint32)]
+        origins: list[NDArray[Any]] = [np.zeros(0, np.uint32)]
         origins += [each[chosen] for each, chosen in zip(self.origins, which, strict=True)]
         return np.concatenate(rows).ravel(), np.concatenate(origins)
 
@@ -132,15 +140,23 @@ class Shard:
     Attributes:
         me: The worker's number.
         workers: The number of workers.
+        reduce: The reductions, None for none.
         store: Its rows. An origin may be another worker's row: its number is row · workers + worker.
         model: The rules that it has learned.
         expander: Makes the successors of its rows.
         keys: The keys of values, from which a row's worker is computed.
+        choosing: What chooses ample sets; None without partial-order reduction.
+        paths: With it, the paths of its cycle proviso.
+        round: With it, the rows of this round.
+        tried: A batch for the steps of one row.
+        answers: The places of the rows last received from each worker.
         outbox: The successors that wait for sending.
         begins: The first row of each layer, up to the one in expansion.
         end: The end of that layer.
         sent: The bytes of rows sent so far.
+        learned: The rows at which something was learned.
         rules_before: The number of transitions of each rule before the resumed checkpoint.
+        allowed_before: The number of enabled transitions before it.
         happened_before: The environment's events before it.
         told: The codes sent so far to each worker.
         dictionaries: The codes received from each worker.
@@ -149,16 +165,23 @@ class Shard:
         varying: The columns with several values in that packing.
     """
 
-    def __init__(self, initial: Configuration, pending: int, me: int, workers: int) -> None:
+    def __init__(
+        self, initial: Configuration, pending: int, me: int, workers: int, reduce: Reduced | None = None
+    ) -> None:
+        self.reduce = reduce
         self.me = me
         self.workers = workers
-        self.sent = 0
+        self.sent, self.shape = 0, (0, 0, 0)
         learner = Learner(initial.setting, initial.state, pending)  # type: ignore[arg-type]  # a stored one
-        self.store = RowStore(form=RowFormat(Elsewhere, compressible=False))  # rows travel between workers
-        self.model = RuleModel(learner, self.store)
-        self.expander = Expander(self.model)
+        self.choosing = choosing(learner, reduce)
+        self.store = RowStore(form=RowFormat(Elsewhere, compressible=self.choosing is None, travels=True))
+        self.model = RuleModel(learner, self.store, exchanging(learner, reduce, ahead=False))
+        self.expander = Expander(self.model, self.choosing)
+        self.paths = DividedPaths(me, workers)
+        self.round: ReducedRound | None = None
         self.keys = Keys(learner.columns)
         self.outbox = Outbox(self.store.packing)
+        self.answers: list[NDArray[np.int64]] = []
         self.located_in: Packing | None = None
         self.model.followers.append(self._see)
         self.model.see()
@@ -194,21 +217,28 @@ class Shard:
         """
         model = self.model
         model.forget()
+        model.exchanging = exchanging(model.learner, self.reduce, ahead=False)
+        self.learned: set[int] = set()
         self.store.clear()
         model.learner.columns.codes(model.learner.still)  # creates the columns that only the first row needs
         model.see()
-        self.expander.counts.used[:] = 0
+        self.expander.counts.used[:] = self.expander.met.used[:] = 0
         self.begins, self.end = [0], 0
         self.rules_before: Counter[str] = Counter()
         self.happened_before: frozenset[str] = frozenset()
+        self.allowed_before = 0
         self.told = [SentValues() for _ in range(self.workers)]
         self.dictionaries = [Dictionary() for _ in range(self.workers)]
         self.outbox = Outbox(self.store.packing)
+        if self.choosing is not None:
+            self.choosing.paths.movers.room[0] = self.paths.leads.room[0] = 0
         self._forget_sent()
 
     def _see(self) -> None:
         """Keep up with the model, and with the packing of the rows."""
         self.keys.refresh()
+        if self.choosing is not None and self.shape != self.expander.shape:
+            self.shape, self.tried = self.expander.shape, self.expander.new_batch(self.expander.successors)
         where = self.store.packing
         if self.located_in is where:
             return
@@ -230,15 +260,32 @@ class Shard:
     def expand(self, layer: int, most: int) -> tuple[RowParcel, ...]:
         """Expand at most `most` rows of a layer, and return a parcel for each worker."""
         self.enter(layer)
-        until = min(self.expanded + most, self.end)
-        self.store.state[AT] = self.expanded
-        while self.expanded < until:
-            self.store.make_room(self.expander.successors)
-            known = self.expander.gather(until)
-            self._deal()
-            if not known:
-                self.expander.learn()
+        if self.store.compress():
+            self.model.see()
+        rows = range(self.expanded, min(self.expanded + most, self.end))
+        if self.choosing is None:
+            self._expand([rows], self.expander.gather)
+        else:
+            self.choosing.paths.end = self.end
+            self.round = ReducedRound(rows, np.zeros(len(rows), np.bool_))
+            self._expand([rows], self._gather_reduced)
+        self.store.state[EXPANDED] = rows.stop
         return self.parcels()
+
+    def _expand(self, ranges: Iterable[range], gather: Callable[[int], bool]) -> None:
+        """Expand rows by gathering their successors, learning on the way."""
+        state = self.store.state
+        for rows in ranges:
+            state[AT] = rows.start
+            while state[AT] < rows.stop:
+                self.store.make_room(self.expander.successors)
+                known = gather(rows.stop)
+                if not known or state[AT] < rows.stop:
+                    self._deal()
+                if not known:
+                    self.learned.add(int(state[AT]))
+                    self.expander.learn()
+        self._deal()
 
     def enter(self, layer: int) -> None:
         """Begin a layer, unless it has begun."""
@@ -249,10 +296,14 @@ class Shard:
     def _deal(self) -> None:
         """Store the batch's rows of this worker, and put the others into the outbox."""
         store, expander = self.store, self.expander
+        if self.round is not None:
+            self._deal_reduced(self.round)
+            return
         batch, count = expander.batch, expander.gathered()
         chosen, owners = np.zeros(count, np.int64), np.zeros(count, np.int32)
         found = kernel.deal(
             *store.arrays,
+            store.rows.folded,
             batch,
             count,
             self.owning(),
@@ -263,13 +314,91 @@ class Shard:
             expander.counts.used,
             store.state,
         )
-        store.state[EXPANDED] = store.state[AT]
-        self.send(batch, chosen[:found], owners[:found])
+        chosen, owners = chosen[:found], owners[:found]
+        if store.rows.folded is not None:
+            self._store(batch, chosen[owners == self.me])
+            chosen, owners = chosen[owners != self.me], owners[owners != self.me]
+        self.send(batch, chosen, owners)
+
+    def _store(
+        self, batch: SuccessorBatch, which: NDArray[np.int64], movers: NDArray[Any] | None = None
+    ) -> NDArray[np.int64]:
+        """Store some successors of a batch, which are its own; return their places if movers are given."""
+        rows = batch.kept.reshape(-1, self.store.packing.words)[which].ravel()
+        origins = batch.origins[which] * self.workers + self.me
+        mine, size = batch._replace(kept=rows, hashes=batch.hashes[which], origins=origins), self.size
+        self.store.add(mine, (0, len(which)), self.model.making)
+        return which if movers is None else self._note_movers(mine, len(which), movers, size)
 
     def send(self, batch: SuccessorBatch, which: NDArray[np.int64], owners: NDArray[np.int32]) -> None:
         """Put some successors of a batch into the outbox; each has another worker."""
-        rows = batch.words.reshape(-1, self.store.packing.words)[which]
-        self.outbox.add(rows, batch.origins[which], owners)
+        rows = batch.kept.reshape(-1, self.store.packing.words)[which]
+        origins: NDArray[Any] = batch.origins[which].astype(np.uint32)
+        if self.choosing is not None:
+            origins = origins | self.choosing.movers[batch.steps[which]].astype(np.uint64) << HALF
+        self.outbox.add(rows, origins, owners)
+
+    # --- partial-order reduction ----------------------------------------------------------------------------------
+
+    def _gather_reduced(self, until: int) -> bool:
+        """Gather successors by ample sets; return False at something not learned yet."""
+        from checker.engines.fast.ample_kernel import gather_reduced  # noqa: PLC0415  # compiled only for a reduction
+
+        store, expander, model, choosing = self.store, self.expander, self.model, self.choosing
+        assert choosing is not None
+        assert self.round is not None
+        choosing.paths.reserve(store.rows.room)
+        known = (model.loops, choosing.members, *model.symmetry, choosing.paths.trails)
+        stored = (store.rows.words, store.rows.folded, store.table.room, self.tried, expander.batch)
+        counted = (self.round.reduced, self.round.rows.start, until, expander.met.room, store.state)
+        return bool(gather_reduced(*known, *stored, *counted))
+
+    def _deal_reduced(self, found: ReducedRound) -> None:
+        """Store the batch's rows of this worker, and put all others into the outbox: their workers answer for them."""
+        batch, count = self.expander.batch, self.expander.gathered()
+        count_steps(batch.steps, 0, count, self.expander.counts.room)
+        owners, places = self.owners_of(batch.kept, batch.origins[:count]), np.zeros(count, np.int64)
+        mine, others = np.flatnonzero(owners == self.me), np.flatnonzero(owners != self.me)
+        assert self.choosing is not None
+        places[mine] = self._store(batch, mine, self.choosing.movers[batch.steps[mine]])
+        followed = (
+            batch.origins[:count].copy(),
+            batch.steps[:count].astype(np.int64),
+            owners.astype(np.int64),
+            places,
+        )
+        found.followed.append(followed)
+        self.send(batch, others, owners[others])
+
+    def _note_movers(
+        self, batch: SuccessorBatch, count: int, movers: NDArray[Any], size: int
+    ) -> NDArray[np.int64]:
+        """Note the movers of the rows from row `size` on, just stored from a batch; return the places of all in it."""
+        numbers = self.store.look_up(batch, count, self.model.making)
+        if self.choosing is not None:
+            self.choosing.paths.reserve(self.store.rows.room)
+            self.paths.leads.grow(self.store.rows.room)
+            new = np.flatnonzero(numbers >= size)[::-1]  # of equal ones the first was stored
+            self.choosing.paths.movers.room[numbers[new]] = movers[new]
+            self.paths.leads.room[numbers[new]] = 0
+        return place_of(numbers, self.end)
+
+    def lead_on(self, links: Links) -> None:
+        """Expand in full the rows of the round of which no followed step leads on; all workers call it at once."""
+        found, counts = self.round, self.expander.counts.used
+        assert found is not None
+        assert self.choosing is not None
+        answers = links.exchange(self.answers)
+        if self.choosing.ample.forward:
+            origins, steps, _, places = found.whole(answers)
+            left = np.unique(origins[found.reduced[origins - found.rows.start] & (places & 1 == 0)])
+        else:
+            origins, steps, *_ = found.whole(answers)
+            left = self.paths.lead_on(links, found, answers)
+        np.subtract.at(counts, steps[np.isin(origins, left)], 1)
+        self._expand((range(row, row + 1) for row in left.tolist()), self.expander.gather)
+
+    # --- rows in transit --------------------------------------------------------------------------------------------
 
     def owning(self) -> kernel.Owning:
         """Return the data that assigns rows to workers."""
@@ -279,7 +408,8 @@ class Shard:
     def owners_of(self, rows: NDArray[np.uint64], origins: NDArray[np.int64]) -> NDArray[np.int32]:
         """Return the worker of each row; `origins` are own rows from which they were reached."""
         owners, store = np.zeros(len(origins), np.int32), self.store
-        kernel.owners_of(store.rows.words, origins, rows, store.packing.words, self.owning(), owners)
+        known = (store.rows.words, store.rows.folded)
+        kernel.owners_of(*known, origins, rows, store.packing.words, self.owning(), owners)
         return owners
 
     def parcels(self, *, always: bool = False) -> tuple[RowParcel, ...]:
@@ -297,9 +427,16 @@ class Shard:
     def take(self, *parcels: RowParcel) -> None:
         """Store the rows that the others have sent, in the order of the workers."""
         self.hear(parcels)
+        self.answers = []
         for peer, parcel in enumerate(parcels):
+            told = [np.zeros(0, np.int64)]
             for count in self.translated(peer, parcel):
+                size = self.size
                 self.store.add(self.expander.batch, (0, count), self.model.making)
+                if self.choosing is not None:
+                    batch = self.expander.batch
+                    told.append(self._note_movers(batch, count, batch.steps, size))
+            self.answers.append(np.concatenate(told))
 
     def hear(self, parcels: Sequence[RowParcel]) -> None:
         """Add the values that the others have sent."""
@@ -327,10 +464,11 @@ class Shard:
         store, batch, rows = self.store, self.expander.batch, writable(parcel.rows)
         read, room = spelling(parcel.packing, *self.dictionaries[peer].arrays()), len(batch.hashes)
         for first in range(0, len(parcel), room):
-            origins = parcel.origins[first : first + room].astype(np.int64) * self.workers + peer
-            batch.origins[: len(origins)] = origins
+            origins = parcel.origins[first : first + room].astype(np.int64)
+            batch.origins[: len(origins)] = (origins & LOW) * self.workers + peer
+            batch.steps[: len(origins)] = origins >> HALF
             where = (store.packing.columns, store.packing.words)
-            made = (batch.words, batch.hashes)
+            made = (batch.kept, batch.hashes)
             kernel.translate(rows, first, len(origins), parcel.packing.words, read, *where, *made)
             yield len(origins)
 
@@ -349,7 +487,7 @@ class Shard:
         store.state[[SIZE, AT]] = 0, 0
 
     def look_around(self) -> None:
-        """Rebuild the table after rows were loaded in place."""
+        """Rebuild the table after rows were put in place."""
         self.store.rebuild(2 * max(self.size, FIRST_ROWS))
         self.store.make_room(self.expander.successors)
 
@@ -376,7 +514,12 @@ class Shard:
 
     def survey(self) -> RowSurvey:
         """Return a survey of its expanded rows."""
-        return RowSurvey(self.model, self.expander.counts.used.copy())
+        return RowSurvey(self.model, self.expander.met.used.copy())
+
+    @property
+    def allowed(self) -> int:
+        """The number of enabled transitions of the expanded rows."""
+        return int(self.expander.met.used.sum()) + self.allowed_before
 
     @property
     def boundaries(self) -> tuple[int, ...]:

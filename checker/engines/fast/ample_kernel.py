@@ -37,6 +37,7 @@ from checker.engines.fast.learned_model import (
     CROWDS,
     EXPANDED,
     FULL,
+    GATHERED,
     KEPT,
     NODE,
     SIZE,
@@ -175,13 +176,15 @@ def join(
 ) -> int:
     """Add a set if it is ample and has an ignored actor (cycle proviso).
 
-    If all steps must lead forward, the set is added only if they do, and no other joins it.
+    If all steps must lead forward, the set is added only if they do, and no other joins it. In a divided search (with
+    `trails.end`) this is only assumed, and the workers see to it together afterwards.
 
     Returns:
         A transition of the set whose successor's path does not return to this row. If there is none: NOBODY_LEFT if no
         enabled actor is ignored any more, else GOING_ON. UNKNOWN if something is not learned yet.
     """
     kept, row, wide = state[KEPT], state[AT], (actors + WORD - 1) // WORD
+    most = trails.end or row + 1
     if not ignores(r, r.sets, at, wide):
         return GOING_ON
     ample = is_ample(m, r, f, here, batch, count, at, state)
@@ -197,10 +200,10 @@ def join(
                 return UNKNOWN
             number = find(words, table, batch.kept, k, batch.hashes[k], kept, bits)
             if forward:
-                if 0 <= number <= row:
+                if 0 <= number < most:
                     return GOING_ON
                 continue
-            if number < 0:
+            if number < 0 or trails.end:
                 return k
             r.more[:] = np.uint64(0)
             if end_of(trails, number, r.more) != row:
@@ -290,6 +293,110 @@ def choose(
     return EVERYBODY
 
 
+@inner(cache=True)
+def list_chosen(
+    m: LearnedModel,
+    r: Members,
+    x: Any,
+    d: Any,
+    trails: Trails,
+    f: FoldedTable | None,
+    here: Words,
+    words: Words,
+    table: Any,
+    batch: SuccessorBatch,
+    state: State,
+) -> tuple[int, int]:
+    """List the steps of a row and choose some; return the number of steps, and what `choose` returns."""
+    count, onward = list_steps(m, here, 0, batch, 0, state), np.int64(EVERYBODY)
+    if count == NOT_LEARNED:
+        return np.int64(0), np.int64(UNKNOWN)
+    if count == CROWDED:
+        state[CROWDS] += 1
+        count = np.int64(0)
+    if count:
+        count = without_repetitions(m, r, f, here, batch, count, state)
+    if count == UNKNOWN:
+        return np.int64(0), np.int64(UNKNOWN)
+    if count:
+        onward = np.int64(choose(m, r, x, d, trails, f, here, words, table, batch, count, state))
+    return np.int64(count), onward
+
+
+@inner(cache=True)
+def make_chosen(
+    m: LearnedModel,
+    r: Members,
+    x: Any,
+    d: Any,
+    f: FoldedTable | None,
+    here: Words,
+    batch: SuccessorBatch,
+    count: int,
+    onward: int,
+    state: State,
+) -> bool:
+    """Make the successors to follow; return False at something not learned yet."""
+    for k in range(count):
+        is_followed = onward == EVERYBODY or has(r.inside, 0, r.whose[k])
+        if is_followed and not make_stored(m, r, x, d, f, here, batch, k, state):
+            return False
+    return True
+
+
+@njit(cache=True)
+def gather_reduced(
+    m: LearnedModel,
+    r: Members,
+    x: Any,
+    d: Any,
+    trails: Trails,
+    words: Words,
+    f: FoldedTable | None,
+    table: Any,
+    batch: SuccessorBatch,
+    into: SuccessorBatch,
+    reduced: Any,
+    begin: int,
+    until: int,
+    met: State,
+    state: State,
+) -> bool:
+    """Gather successors by ample sets in a batch, until row `until` or until half of it is full.
+
+    A successor that is not stored here counts as one of the next layer. `reduced` notes, for each row from `begin` on,
+    whether some step is left out.
+
+    Returns:
+        False if the next row needs something not learned yet.
+    """
+    kept = state[KEPT]
+    while state[AT] < until and state[GATHERED] <= len(into.steps) // 2:
+        row = state[AT]
+        here = words[row * kept : (row + 1) * kept]
+        if f is not None:
+            unfold(f, words, row)
+            here = f.whole
+        count, onward = list_chosen(m, r, x, d, trails, f, here, words, table, batch, state)
+        if onward == NOBODY_LEFT and not trails.asked & FORWARD:
+            onward = np.int64(EVERYBODY)
+        if onward == UNKNOWN or not make_chosen(m, r, x, d, f, here, batch, count, onward, state):
+            return False
+        if state[GATHERED] + count > len(into.steps):
+            break
+        reduced[row - begin] = onward != EVERYBODY
+        for k in range(count):
+            met[batch.steps[k]] += 1
+            if onward == EVERYBODY or has(r.inside, 0, r.whose[k]):
+                to = state[GATHERED]
+                for j in range(kept):
+                    into.kept[to * kept + j] = batch.kept[k * kept + j]
+                into.hashes[to], into.origins[to], into.steps[to] = batch.hashes[k], row, batch.steps[k]
+                state[GATHERED] = to + 1
+        state[AT] += 1
+    return True
+
+
 @njit(cache=True)
 def expand_reduced(
     m: LearnedModel,
@@ -325,29 +432,14 @@ def expand_reduced(
         if f is not None:
             unfold(f, words, row)
             here = f.whole
-        count = list_steps(m, here, 0, batch, 0, state)
-        if count == NOT_LEARNED:
-            return False
-        if count == CROWDED:
-            state[CROWDS] += 1
-            count = np.int64(0)
-        if count:
-            count = without_repetitions(m, r, f, here, batch, count, state)
-        if count == UNKNOWN:
-            return False
-        onward = np.int64(EVERYBODY)
-        if count:
-            onward = choose(m, r, x, d, trails, f, here, words, table, batch, count, state)
+        count, onward = list_chosen(m, r, x, d, trails, f, here, words, table, batch, state)
         known, path = onward != UNKNOWN, np.int64(0)
         if onward >= 0:
             path = intern(trails.sets, r.taken, True)
             if path == NO_ROOM:
                 state[NODE] = FULL
                 known = False
-        for k in range(count if known else 0):
-            if onward == EVERYBODY or has(r.inside, 0, r.whose[k]):
-                known = known and make_stored(m, r, x, d, f, here, batch, k, state)
-        if not known:
+        if not known or not make_chosen(m, r, x, d, f, here, batch, count, onward, state):
             return False
         for k in range(count):
             step = batch.steps[k]

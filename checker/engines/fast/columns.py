@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from checker.engines.fast.access_recording import ColumnQuestion
-from checker.engines.fast.value_templates import Family, ObservationHole, holes, join_value, split_value
+from checker.recording.access_recording import ColumnQuestion
+from checker.recording.value_templates import Family, ObservationHole, holes, join_value, split_value
 from semantics.behaviours.observations import NOTHING_SEEN
 from semantics.state.cell_values import NAMES, Cell, Row
 from semantics.state.signature import Name

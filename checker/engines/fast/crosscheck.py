@@ -1,7 +1,7 @@
 """Cross-check (`--paranoid`): the interpreter recomputes the successors of a sample of configurations."""
 
 from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Iterator
 
 from checker.engines.fast.expander import Expander
 from checker.engines.fast.learner import is_crowded
@@ -17,7 +17,32 @@ class Disagreement(Exception):
     """The learned successors differ from the interpreter's: a bug of this program."""
 
 
-def crosscheck(expander: Expander, numbers: Iterable[int], reduce: Reduced | None = None) -> None:
+Successors = Iterator[tuple[int, Configuration | None]]
+"""The transitions of a row, each with its target; None for one that is not stored."""
+
+
+def in_store(expander: Expander, number: int) -> Successors:
+    """Yield the successors of a row as they are stored."""
+    for _, steps, targets in expander.edges(range(number, number + 1)):
+        for step, target in zip(steps.tolist(), targets.tolist(), strict=True):
+            yield step, None if target < 0 else expander.model.configuration(target)
+
+
+def in_batch(expander: Expander, number: int) -> Successors:
+    """Yield the successors of a row of a plain store as they are made: others may store them."""
+    where, model = expander.store.packing, expander.model
+    for _, steps, _ in expander.edges(range(number, number + 1)):
+        for step, words in zip(steps.tolist(), expander.batch.kept.reshape(-1, where.words), strict=False):
+            cells = model.learner.columns.row(where.codes(words))
+            yield step, Configuration(model.learner.setting, cells)
+
+
+def crosscheck(
+    expander: Expander,
+    numbers: Iterable[int],
+    reduce: Reduced | None = None,
+    successors: Callable[[Expander, int], Successors] = in_store,
+) -> None:
     """Compare learned successors of rows, and the assumptions of reductions and race monitor, with the interpreter.
 
     Raises:
@@ -25,13 +50,13 @@ def crosscheck(expander: Expander, numbers: Iterable[int], reduce: Reduced | Non
     """
     for number in numbers:
         look()
-        compare(expander, number, reduce)
+        compare(expander, number, reduce, successors(expander, number))
         heed(expander.model.configuration(number))
         if reduce is not None:
             reduce.hold(expander.model.configuration(number))
 
 
-def compare(expander: Expander, number: int, reduce: Reduced | None = None) -> None:
+def compare(expander: Expander, number: int, reduce: Reduced | None, successors: Successors) -> None:
     """Compare the learned successors of one configuration with the interpreter's, by rule and number.
 
     Under symmetry reduction, the interpreter's successors are first replaced by their representatives.
@@ -39,14 +64,11 @@ def compare(expander: Expander, number: int, reduce: Reduced | None = None) -> N
     c = expander.model.configuration(number)
     learned: Counter[tuple[str, Configuration]] = Counter()
     left_out = 0
-    for _, steps, targets in expander.edges(range(number, number + 1)):
-        for step, target in zip(steps, targets, strict=True):
-            if target < 0:
-                left_out += 1  # beyond the limit of configurations, or deferred by partial-order reduction
-            else:
-                learned[
-                    expander.model.learner.steps[int(step)].rule, expander.model.configuration(int(target))
-                ] += 1
+    for step, target in successors:
+        if target is None:
+            left_out += 1  # beyond the limit of configurations, or deferred by partial-order reduction
+        else:
+            learned[expander.model.learner.steps[step].rule, target] += 1
     is_left = any(
         is_crowded(c, a, expander.model.learner.pending) for a in c.alpha.names()
     )  # then the row has no successors

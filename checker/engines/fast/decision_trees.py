@@ -11,9 +11,9 @@ from typing import Any
 
 import numpy as np
 
-from checker.engines.fast.access_recording import ColumnQuestion
 from checker.engines.fast.arrays import Growing
 from checker.engines.fast.columns import Column
+from checker.recording.access_recording import ColumnQuestion
 
 UNKNOWN = 0
 RECORD = 8

@@ -4,11 +4,11 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from checker.engines.fast.access_recording import Conclusion, Edited, ObservedFacts, Pointwise
 from checker.engines.fast.columns import Columns, Place, Writes
 from checker.engines.fast.decision_leaves import Effect
 from checker.engines.fast.decision_trees import LearningError
-from checker.engines.fast.value_templates import Family, split_value
+from checker.recording.access_recording import Conclusion, Edited, ObservedFacts, Pointwise
+from checker.recording.value_templates import Family, split_value
 from semantics.behaviours.observations import NOTHING_SEEN
 from semantics.state.cell_values import Cell, Changes, Row, merged
 from semantics.state.configuration import Transition

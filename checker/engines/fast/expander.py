@@ -17,11 +17,13 @@ from checker.engines.fast.learned_model import (
     EXPANDED,
     FULL,
     GATHERED,
+    KEPT,
     LATER,
     NODE,
     WIDE,
     SuccessorBatch,
 )
+from checker.engines.fast.rows import BLOCK
 from checker.engines.fast.rule_model import RuleModel
 from checker.limits import look
 
@@ -57,6 +59,7 @@ class Expander:
         self.met = self.counts if choosing is None else Growing(np.int64)
         self.successors = BATCH
         self.shape = (0, 0, 0)
+        self._plain = (-1, 0, 0, np.zeros(0, np.uint64))
         model.followers.append(self.see)
 
     @property
@@ -68,9 +71,24 @@ class Expander:
 
     def gather(self, until: int) -> bool:
         """Gather the successors of rows, or their representatives; return False at something not learned yet."""
-        rows = self.store.rows
-        known = (*self.model.making, rows.words, rows.folded)
-        return bool(kernel.gather(*known, self.batch, self.state, until))
+        rows, state, first = self.store.rows, self.state, 0
+        begin, words, folded = state[GATHERED], rows.words, self.store.folded
+        if folded is None and rows.folded is not None:
+            first, until, words = self._unfolded(int(state[AT]), until)
+            state[AT], state[KEPT] = state[AT] - first, rows.width
+        known = kernel.gather(*self.model.making, words, folded, self.batch, state, until - first)
+        self.batch.origins[begin : state[GATHERED]] += first
+        state[AT], state[KEPT] = state[AT] + first, rows.kept
+        return bool(known)
+
+    def _unfolded(self, row: int, until: int) -> tuple[int, int, NDArray[np.uint64]]:
+        """Return the bounds of some rows before row `until`, from a row on or from before it, and their plain words."""
+        changes, first, end, words = self._plain
+        if changes != self.store.changes or not first <= row < end:
+            first, end = row, min(row + BLOCK, self.store.size)
+            words = self.store.rows.plain(first, end)
+            self._plain = self.store.changes, first, end, words
+        return first, min(until, end), words
 
     def gathered(self) -> int:
         """Return the number of gathered successors, and begin anew."""
@@ -131,14 +149,15 @@ class Expander:
     def new_batch(self, successors: int | None = None, later: int = 0) -> SuccessorBatch:
         """Return an empty batch for `successors` successors, with room for `later` deferred rows."""
         successors = BATCH if successors is None else successors
-        rows, width = self.store.rows, self.store.packing.words
+        folded, width = self.store.folded, self.store.packing.words
         is_mapped = self.model.exchanging is not None
-        makes_words = is_mapped or self.choosing is not None or rows.folded is None
+        makes_words = is_mapped or self.choosing is not None or folded is None
         words = np.zeros(width * successors if makes_words else 0, np.uint64)
-        is_stored_as_made = rows.folded is None and not is_mapped
+        kept = width if folded is None else self.store.rows.kept
+        is_stored_as_made = folded is None and not is_mapped
         return SuccessorBatch(
             words,
-            words if is_stored_as_made else np.zeros(rows.kept * successors, np.uint64),
+            words if is_stored_as_made else np.zeros(kept * successors, np.uint64),
             np.zeros(successors, np.uint64),
             np.zeros(successors, np.int64),
             np.zeros(successors, np.int32),

@@ -9,7 +9,6 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from bigraphs.resources import cores
 from checker.engines.contract import Exploration, Inspect, Options, Progress, sample
@@ -19,14 +18,10 @@ from checker.engines.fast.compile_progress import compilation_uncounted
 from checker.engines.fast.learner import Learner
 from checker.engines.fast.row_graph import GraphSurvey
 from checker.engines.fast.row_inspection import inspect_fast
-from checker.engines.fast.row_search import RowSearch
+from checker.engines.fast.row_search import RowSearch, choosing, exchanging
 from checker.engines.made_on_access import MadeOnAccess
 from checker.limits import Bound, BoundMet, CheckPart, Limits, Stop, bounded, is_full, memory_left
 from semantics.state.configuration import Configuration
-
-if TYPE_CHECKING:
-    from checker.engines.fast.partial_order import Choosing
-    from checker.engines.fast.symmetry_tables import Exchanging
 
 CHUNK = 1 << 15
 """Rows expanded between two checks of the clock."""
@@ -78,8 +73,8 @@ class _Explorer:
         self.search = RowSearch(
             self.learner,
             limits.configurations,
-            self.choosing(),
-            self.exchanging(),
+            choosing(self.learner, self.reduce),
+            exchanging(self.learner, self.reduce),
             options.threads or cores(),
         )
         self.search.store.left = self.left
@@ -88,24 +83,6 @@ class _Explorer:
         self.bounds: list[Bound] = []
         self.exploring = 1.0
         self.is_kept = False
-
-    def choosing(self) -> "Choosing | None":
-        """Return the chooser of ample sets; None without partial-order reduction."""
-        ample = None if self.reduce is None else self.reduce.ample
-        if ample is None:
-            return None
-        from checker.engines.fast.partial_order import Choosing  # noqa: PLC0415  # compiled only for a reduction
-
-        return Choosing(self.learner, ample)
-
-    def exchanging(self) -> "Exchanging | None":
-        """Return the symmetry tables; None without symmetry reduction."""
-        symmetry = None if self.reduce is None else self.reduce.symmetry
-        if symmetry is None:
-            return None
-        from checker.engines.fast.symmetry_tables import Exchanging  # noqa: PLC0415  # compiled only for symmetry
-
-        return Exchanging(self.learner, symmetry.items)
 
     @property
     def checkpoint(self) -> Path | None:

@@ -6,8 +6,8 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
-from checker.engines.fast.access_recording import QuestionScope
 from checker.engines.fast.rule_cache import Exchange, NoImage, names_in
+from checker.recording.access_recording import QuestionScope
 from checker.reduction.alpha_equivalence import Pairing, Unlike
 from checker.reduction.mission_automorphisms import Automorphisms
 from semantics.behaviours.observations import AGENT

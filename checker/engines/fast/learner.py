@@ -6,17 +6,10 @@ part has a tree of its own. So the answers of an observation for different names
 """
 
 from collections import defaultdict
-from collections.abc import Callable, Hashable, Iterable, Sequence
+from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple
 
-from checker.engines.fast.access_recording import (
-    CellRecorder,
-    CellSource,
-    ColumnQuestion,
-    Edited,
-    QuestionScope,
-)
 from checker.engines.fast.columns import Columns, Packing, Place, Writes
 from checker.engines.fast.decision_leaves import (
     ALIKE,
@@ -28,12 +21,19 @@ from checker.engines.fast.decision_leaves import (
     LeafStep,
     LeafTables,
 )
-from checker.engines.fast.decision_trees import Trees
+from checker.engines.fast.decision_trees import UNKNOWN, Trees
 from checker.engines.fast.effects import EffectWriter, RecordedEffect, Relearn, Varies
 from checker.engines.fast.interchangeable import Likeness
 from checker.engines.fast.rule_cache import CachedOutcome, Exchange, Kin, PartLessons
 from checker.engines.fast.rule_cache_lookup import Learned, SharedLessons
-from checker.engines.fast.value_templates import agents_of, mobile_names, settled
+from checker.recording.access_recording import (
+    CellRecorder,
+    CellSource,
+    ColumnQuestion,
+    Edited,
+    QuestionScope,
+)
+from checker.recording.value_templates import agents_of, mobile_names, settled
 from semantics.behaviours.expressions import Fault
 from semantics.behaviours.observations import Fact, Observation
 from semantics.environment import Clause
@@ -148,6 +148,9 @@ class Learner:
         reads: For each leaf of an actor, the columns and questions on its path, with the answers.
         steps: The label of each transition.
         whose: The actor of each transition.
+        paths: For each leaf the columns on its path.
+        writing_trees: The trees of parts with a transition that writes.
+        awoken: The number of trees of parts that had none of these transitions, until they learned one.
     """
 
     setting: Setting
@@ -171,6 +174,9 @@ class Learner:
     whose: dict[int, TransitionGroup] = field(default_factory=dict)
     answers: dict[int, Hashable] = field(default_factory=dict)
     reads: dict[int, tuple[tuple[int, ColumnQuestion, Any], ...]] = field(default_factory=dict)
+    paths: dict[int, tuple[int, ...]] = field(default_factory=dict)
+    writing_trees: set[int] = field(default_factory=set)
+    awoken: int = 0
     runs: int = 0
 
     def __post_init__(self) -> None:
@@ -251,7 +257,7 @@ class Learner:
             self.sharing.teach(kin, found)
         steps, parts = [], []
         for number, outcome in enumerate(found.outcomes):
-            effect = self._effect(outcome)
+            effect = self._effect(outcome, found.codes)
             trees = [self._plant(self._part(run, number, name, outcome, kin)) for name in outcome.apart]
             effect.parts = [*trees, *map(self.tree, outcome.edits)]
             self._note_writer(tree, effect.writes)
@@ -299,11 +305,14 @@ class Learner:
         columns = self.columns.all
         return tuple((columns[number].place, columns[number].values[code]) for number, code in writes)
 
-    def _effect(self, outcome: CachedOutcome) -> Effect:
+    def _effect(self, outcome: CachedOutcome, read: Mapping[ColumnQuestion, int]) -> Effect:
+        """Return the effect of an outcome, without the writes of values that were read in the same column."""
         number = self.columns.number
+        there = {self.columns.asked(ask): code for ask, code in read.items()}
         writes = [
             (number(place), self.columns.all[number(place)].code(held)) for place, held in outcome.writes
         ]
+        writes = [(column, code) for column, code in writes if there.get(column) != code]
         return Effect(writes, [(number(to), number(of)) for to, of in outcome.copies])
 
     def _part(self, run: RuleRun, step: int, name: Name, outcome: CachedOutcome, kin: Kin | None) -> PartOf:
@@ -334,7 +343,7 @@ class Learner:
             writes, scope = recorder.apart(lambda: self.writing.part(concluded, part.name))
             found = self._found(scope, source, [CachedOutcome(writes=self._written(writes))])
             self.sharing.teach(part.kin, found)
-        self._grow_one(tree, found, self._effect(found.outcomes[0]).writes)
+        self._grow_one(tree, found, self._effect(found.outcomes[0], found.codes).writes)
 
     def _learn_edit(self, tree: int, edited: Edited, source: CodedSource) -> None:
         self.runs += 1
@@ -382,6 +391,9 @@ class Learner:
     def _grow_one(self, tree: int, found: Learned, writes: Writes) -> None:
         """Add a path with a single effect to a tree."""
         self._note_writer(tree, writes)
+        if writes and tree not in self.writing_trees:
+            self.awoken += int(self.trees.root.room[tree]) != UNKNOWN
+            self.writing_trees.add(tree)
         self._grow(tree, found, self.leaves.add([LeafStep(Effect(writes))]))
 
     def _grow(self, tree: int, found: Learned, leaf: int) -> None:
@@ -394,6 +406,7 @@ class Learner:
             number = self.columns.asked(ask)
             columns.append((self.columns.all[number], number))
             path.append((ask, found.codes[ask] if ask.question is None else answer))
+        self.paths[leaf] = tuple(number for _, number in columns)
         self.trees.grow(tree, path, leaf, columns)
 
     def _steps(

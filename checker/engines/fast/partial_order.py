@@ -26,14 +26,14 @@ from checker.engines.fast.columns import Packing
 from checker.engines.fast.decision_leaves import LEAF
 from checker.engines.fast.learner import Learner
 from checker.engines.fast.proviso_paths import EDGES, FORWARD, SINGLE, SearchPaths
-from checker.engines.fast.value_templates import agents_of
-from checker.properties.inspections import never_ends
+from checker.recording.value_templates import agents_of
 from checker.reduction.actor_footprints import Acting, Actor
 from checker.reduction.ample import Ample
 from checker.reduction.footprint_slots import SlotFootprint
 from checker.reduction.visible_slots import VisiblePart
 from semantics.state.configuration import Configuration, Label
 from semantics.state.signature import Name
+from semantics.timing.arrivals import never_ends
 
 NOBODY = -1
 
@@ -85,6 +85,12 @@ class Choosing:
     def wide(self) -> int:
         """The number of words for a bit set of the parts of all agents and clauses."""
         return -(-(KINDS * len(self.everyone) + len(self.clauses)) // WORD) or 1
+
+    @property
+    def movers(self) -> NDArray[np.int64]:
+        """For each transition the number of its agent, plus 1; 0 for a clause (see `Trails.movers`)."""
+        agents = self.part.room[self.step_actor.used].astype(np.int64) // KINDS
+        return np.where(agents < len(self.everyone), agents + 1, 0)
 
     def see(self, groups: list[tuple[Name, ...]], where: Packing, successors: int) -> None:
         """Rebuild the tables from everything learned; `groups` has the agents for each value of their cell."""

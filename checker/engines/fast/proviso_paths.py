@@ -52,6 +52,7 @@ class Trails(NamedTuple):
         sets: The sets of parts by number, as words of bits: there are few.
         sought: Scratch space for a set to look up.
         asked: What is asked of the search, as bits.
+        end: The first row of the next layer, in a search that is divided among workers; 0 in any other.
         followed: The followed transitions, row by row: target and step.
         ends: For each expanded row, the number of transitions up to its last one.
     """
@@ -64,6 +65,7 @@ class Trails(NamedTuple):
     sets: Interned
     sought: Words
     asked: int
+    end: int
     followed: Words
     ends: Any
 
@@ -152,12 +154,13 @@ class SearchPaths:
 
     Attributes:
         most: The greatest number of transitions of a row.
+        end: The first row of the next layer, in a search that is divided among workers; 0 in any other.
     """
 
     def __init__(self, agents: int, wide: int, asked: int = 0) -> None:
         self.wide = wide
         self.asked = asked
-        self.most = 0
+        self.most = self.end = 0
         self.movers = Pages(np.min_scalar_type(agents).type, 1)
         self.led, self.leads = Pages(np.uint64, 1), Pages(np.uint64, 1)
         self.before = Pages(np.uint32, 1)
@@ -170,7 +173,7 @@ class SearchPaths:
         """The paths in the form that the loops read. Growing replaces them: don't keep them."""
         rooms = (self.movers.room, self.led.room, self.before.room, self.leads.room)
         sought, stored = np.zeros(self.wide, np.uint64), (self.followed.room, self.ends.room)
-        return Trails(*rooms, self.count, self.sets.interned, sought, self.asked, *stored)
+        return Trails(*rooms, self.count, self.sets.interned, sought, self.asked, self.end, *stored)
 
     def reserve(self, rows: int) -> None:
         """Make room for the paths of `rows` rows, for more sets of parts, and for more transitions."""

@@ -21,6 +21,25 @@ from checker.engines.fast.rule_model import RuleModel
 if TYPE_CHECKING:
     from checker.engines.fast.partial_order import Choosing
     from checker.engines.fast.symmetry_tables import Exchanging
+    from checker.reduction.reducer import Reduced
+
+
+def choosing(learner: Learner, reduce: "Reduced | None") -> "Choosing | None":
+    """Return the chooser of ample sets; None without partial-order reduction."""
+    if reduce is None or reduce.ample is None:
+        return None
+    from checker.engines.fast.partial_order import Choosing  # noqa: PLC0415  # compiled only for a reduction
+
+    return Choosing(learner, reduce.ample)
+
+
+def exchanging(learner: Learner, reduce: "Reduced | None", *, ahead: bool = True) -> "Exchanging | None":
+    """Return the symmetry tables, which learn `ahead` or not; None without symmetry reduction."""
+    if reduce is None or reduce.symmetry is None:
+        return None
+    from checker.engines.fast.symmetry_tables import Exchanging  # noqa: PLC0415  # compiled only for symmetry
+
+    return Exchanging(learner, reduce.symmetry.items, ahead=ahead)
 
 
 class RowSearch:

@@ -19,6 +19,7 @@ from checker.engines.fast.mapped_arrays import Pages
 from checker.engines.fast.origins import OriginPages, Rising
 from checker.engines.fast.rows import Rows
 from checker.engines.fast.table import alone, most_in, rebuild, slots_for, slots_within
+from checker.engines.fast.tree_compression import PAIR, FoldedTable, fold_found
 
 FIRST_ROWS = 1 << 15
 MOST_ROWS = (1 << 31) - 1
@@ -40,10 +41,12 @@ class RowFormat:
     Attributes:
         origins: The form of their origins.
         compressible: Whether rows are tree-compressed once they are wide and many.
+        travels: Whether successors are made plain in any case, since they may leave the store.
     """
 
     origins: type[OriginPages] = Rising
     compressible: bool = True
+    travels: bool = False
 
 
 class Readers(Protocol):
@@ -120,6 +123,11 @@ class RowStore:
         return self.rows.held(self.size) + self.table.room.nbytes
 
     @property
+    def folded(self) -> FoldedTable | None:
+        """The tables by which successors are made compressed; None if they are made plain."""
+        return None if self.format.travels else self.rows.folded
+
+    @property
     def arrays(self) -> tuple[Any, Any, Any]:
         """The rows, origins and table for the loops that add rows. Growing replaces them: don't keep them."""
         return self.rows.words, self.rows.origins.loops, self.table.room
@@ -145,6 +153,7 @@ class RowStore:
     def add(self, batch: SuccessorBatch, found: tuple[int, int], making: Making) -> None:
         """Add the new ones of a range of successors."""
         begin, end = found
+        batch = self._stored_form(batch, begin, end, adding=True)
         while begin < end:  # so the time of growth does not depend on the batch
             self.make_room(1)
             known = (*self.arrays, *self._completing(making))
@@ -153,14 +162,27 @@ class RowStore:
     def look_up(self, batch: SuccessorBatch, count: int, making: Making) -> NDArray[np.int64]:
         """Return the number of each of the first successors of a batch, less than 0 for those that are no rows."""
         targets = np.zeros(count, np.int64)
+        batch = self._stored_form(batch, 0, count, adding=False)
         known = (self.rows.words, self.table.room, *self._completing(making))
         kernel.look_up(*known, batch, targets, self.state)
         return targets
 
     def _completing(self, making: Making) -> tuple[Any, Any, Any, Any]:
         """Return the tables that complete a compressed successor. Growing replaces them: don't keep them."""
-        folded = self.rows.folded
-        return (None, None, None, None) if folded is None else (*making, folded)
+        return (None, None, None, None) if self.folded is None else (*making, self.folded)
+
+    def _stored_form(self, batch: SuccessorBatch, begin: int, end: int, *, adding: bool) -> SuccessorBatch:
+        """Return a batch of plain successors with those of a range in the form in which the rows are stored."""
+        rows = self.rows
+        if rows.folded is None or not self.format.travels:
+            return batch
+        kept, hashes = np.zeros(PAIR * end, np.uint64), np.zeros(end, np.uint64)
+        while begin < end:
+            begin = fold_found(rows.folded, rows.words, batch.kept, rows.width, kept, hashes, begin, adding)
+            if begin < end:
+                self.readers.rest()
+                rows.reserve(0)
+        return batch._replace(kept=kept, hashes=hashes)
 
     def show(self) -> None:
         """Publish the rows to other threads."""

@@ -87,8 +87,11 @@ class Rows:
     def blocks(self, size: int) -> Iterator[tuple[int, NDArray[np.uint64]]]:
         """Yield the words of the first `size` rows, block by block, with the number of the first row of each."""
         for begin in range(0, size, BLOCK):
-            kept = self.words[begin * self.kept : min(begin + BLOCK, size) * self.kept]
-            yield begin, self._whole(kept)
+            yield begin, self.plain(begin, min(begin + BLOCK, size))
+
+    def plain(self, begin: int, end: int) -> NDArray[np.uint64]:
+        """Return the words of a range of rows."""
+        return self._whole(self.words[begin * self.kept : end * self.kept])
 
     def _whole(self, kept: NDArray[np.uint64]) -> NDArray[np.uint64]:
         if self._folding is None:

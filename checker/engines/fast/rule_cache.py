@@ -12,9 +12,9 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
 from typing import Any, NamedTuple
 
-from checker.engines.fast.access_recording import ColumnQuestion, Edited
 from checker.engines.fast.columns import ABSENT, Place
-from checker.engines.fast.value_templates import join_value, split_value
+from checker.recording.access_recording import ColumnQuestion, Edited
+from checker.recording.value_templates import join_value, split_value
 from checker.reduction.configuration_renaming import WORD, Renaming, requested_keys
 from semantics.behaviours.observations import AGENT
 from semantics.state.cell_values import Cell

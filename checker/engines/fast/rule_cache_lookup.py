@@ -4,7 +4,6 @@ from collections.abc import Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass, field
 from typing import Any, Final, NamedTuple, Protocol
 
-from checker.engines.fast.access_recording import Asked, ColumnQuestion
 from checker.engines.fast.columns import Columns
 from checker.engines.fast.interchangeable import Likeness
 from checker.engines.fast.rule_cache import (
@@ -16,6 +15,7 @@ from checker.engines.fast.rule_cache import (
     NoImage,
     mentioned,
 )
+from checker.recording.access_recording import Asked, ColumnQuestion
 from semantics.state.cell_values import Cell, Row
 from semantics.state.signature import Name
 

@@ -243,7 +243,7 @@ class RuleModel:
 
     def _make_masks(self) -> None:
         """Compute the masks of new transitions, or of all of them after a repacking."""
-        leaves, where, folded = self.learner.leaves, self.store.packing, self.store.rows.folded
+        leaves, where, folded = self.learner.leaves, self.store.packing, self.store.folded
         width = 2 * where.words if folded is None else 1
         known = self._masks.size // width
         self._masks.extend((len(leaves.rule) - known) * width)

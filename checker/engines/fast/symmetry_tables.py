@@ -25,7 +25,7 @@ from checker.engines.fast.canonicalise import (
 )
 from checker.engines.fast.columns import Packing, Writes
 from checker.engines.fast.learner import Learner
-from checker.engines.fast.value_templates import holes, split_value
+from checker.recording.value_templates import holes, split_value
 from checker.reduction.member_items import Items, Member, Place, Roles
 from checker.reduction.representatives import MOST_ORDERS
 from semantics.state.cell_values import AGENTS, NAMES
@@ -59,13 +59,15 @@ class Exchanging:
 
     Attributes:
         exchanges: The tables in the form that the loops read.
+        ahead: Whether new codes are learned before a row needs them.
     """
 
     exchanges: Exchanges
 
-    def __init__(self, learner: Learner, items: Items) -> None:
+    def __init__(self, learner: Learner, items: Items, *, ahead: bool = True) -> None:
         self.learner = learner
         self.items = items
+        self.ahead = ahead
         self.entries: list[dict[int, int]] = []
         self.shapes: dict[tuple[Place, Any], int] = {}
         self.homes: dict[int, tuple[tuple[Place, Any], tuple[Member, ...]]] = {}
@@ -220,9 +222,9 @@ class Exchanging:
             self._move(int(self.shape.room[what]), listed)
 
     def _learn_codes(self, number: int, code: int) -> None:
-        """Learn the entry of a code and of all new codes of skeletons: these are few, and most of them occur."""
+        """Learn the entry of a code and, `ahead`, of all new codes of skeletons: these are few, and most occur."""
         self._learn_code(number, code)
-        for other, column in enumerate(self.learner.columns.all[: len(self.entries)]):
+        for other, column in enumerate(self.learner.columns.all[: len(self.entries) if self.ahead else 0]):
             if len(column.place) == 1:
                 for each in range(1, len(column.values)):
                     if each not in self.entries[other]:

@@ -247,6 +247,32 @@ def fold_rows(f: FoldedTable, words: Words, width: int, kept: Words, begin: int)
 
 
 @njit(cache=True)
+def fold_found(
+    f: FoldedTable,
+    stored: Words,
+    words: Words,
+    width: int,
+    kept: Words,
+    hashes: Words,
+    begin: int,
+    adding: bool,
+) -> int:
+    """Compress rows as `fold_rows`, beside the first of the `stored` ones, and hash them.
+
+    Unless `adding`, a row with an unknown piece becomes no row.
+    """
+    unfold(f, stored, 0)
+    for k in range(begin, len(hashes)):
+        found = fold(f, take(f, words, k * width, width, adding), adding, kept, PAIR * k)
+        if found == NO_ROOM:
+            return k
+        hashes[k] = hashed(kept, PAIR * k, PAIR)
+        if found >= 0:
+            unfold(f, kept, k)
+    return len(hashes)
+
+
+@njit(cache=True)
 def unfold_rows(f: FoldedTable, kept: Words, width: int, words: Words) -> None:
     """Write the words of compressed rows one after another."""
     for k in range(len(kept) // PAIR):

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Sequence, Set
 from dataclasses import replace
 
+from checker.engines.original_run import original_step
 from checker.engines.timed.answers import (
     DateSpan,
     FirstMoments,
@@ -22,7 +23,6 @@ from checker.engines.timed.exchanged_clocks import ClockExchange
 from checker.engines.timed.first_runs import TimedRun
 from checker.limits import look
 from checker.reduction.configuration_renaming import Renaming
-from checker.reduction.original_run import original_step
 from semantics.properties.propositions import Proposition
 from semantics.state.configuration import Configuration, Transition
 from semantics.state.signature import Name

@@ -9,6 +9,7 @@ from functools import cached_property, partial, reduce
 import numpy as np
 from numpy.typing import NDArray
 
+from checker.engines.fast.proposition_table import Profiles
 from checker.engines.fast.row_inspection import truths
 from checker.engines.made_on_access import MadeOnAccess
 from checker.engines.timed.answers import (
@@ -67,11 +68,12 @@ class ZoneTimes:
         self.initial = network.initial
         self.reached: NDArray[np.int64] = np.flatnonzero(search.heads.used >= 0)
         self.order: NDArray[np.int64] = search.order
+        self._reads_of: dict[tuple[Proposition, ...], NDArray[np.uint64]] = {}
 
     @property
     def searched(self) -> str:
         """The size of the searched state space, in words."""
-        return f"{self.search.count:,} zones"
+        return f"{self.search.count:,} zones" + (" of local time" if self.search.is_local else "")
 
     @property
     def situations(self) -> Sequence[TimedView]:
@@ -347,11 +349,12 @@ class ZoneTimes:
         if asked is None and rule(ObserverClock.OFF, self.network.first) is ObserverClock.OFF:
             return WaitAnswer(0)
         meter = Meter(most + 1, goal=(ObserverClock.ON, most + 1))
-        observer, search = self.explored(Observer(self.network, rule, meter))
+        asks = (awaited,) if asked is None else (asked, awaited)
+        observer, search = self.explored(self._observer(rule, meter, asks))
         if search.found < 0:
             return WaitAnswer(int(_shown(observer, search, ObserverClock.ON)[1].max(initial=0)))
         run = self._measured(search).run()
-        longest = self._longest(rule, ObserverClock.ON, most)
+        longest = self._longest(rule, ObserverClock.ON, asks, most)
         return WaitAnswer(longest, run, math.isinf(longest))
 
     def moments(self, formula: Proposition) -> FirstMoments:
@@ -365,25 +368,51 @@ class ZoneTimes:
                 return ObserverClock.END
             return ObserverClock.ON if before is ObserverClock.ON else ObserverClock.START
 
-        first = self._first(rule)
-        latest = NEVER if first is None else self._longest(rule, ObserverClock.END)
-        return FirstMoments(first, latest, math.isinf(self._longest(rule, ObserverClock.ON)))
+        first = self._first(rule, (formula,))
+        latest = NEVER if first is None else self._longest(rule, ObserverClock.END, (formula,))
+        return FirstMoments(first, latest, math.isinf(self._longest(rule, ObserverClock.ON, (formula,))))
 
-    def _first(self, rule: Rule) -> TimedRun | None:
+    def _observer(self, rule: Rule, meter: Meter, asks: tuple[Proposition, ...]) -> Observer:
+        """Return an observer of propositions."""
+        return Observer(self.network, rule, meter, reads=self._reads(asks) if self.search.is_local else None)
+
+    def _reads(self, asks: tuple[Proposition, ...]) -> NDArray[np.uint64] | None:
+        """Return for each location the columns that decide some propositions; None if a column is too new."""
+        participants = self.network.participants
+        assert participants is not None
+        if asks not in self._reads_of:
+            survey = self.survey()
+            trees = [tree for formula in asks for tree in Profiles(survey, formula).trees.values()]
+            leaves = [self.network.model.classify(tree, self.order) for tree in trees]
+            participants.see()
+            if participants.is_void:
+                return None
+            sets = participants.reads.used.reshape(-1, participants.words)
+            found = np.zeros((self.network.size, participants.words), np.uint64)
+            for each in leaves:
+                found[self.order] |= sets[each]
+            self._reads_of[asks] = found[self.network.of_locations.used]
+        return self._reads_of[asks]
+
+    def _first(self, rule: Rule, asks: tuple[Proposition, ...]) -> TimedRun | None:
         """Return the first of the earliest runs to an end of the observer."""
-        observer, search = self.explored(Observer(self.network, rule, Meter(upper=MOST)))
+        observer, search = self.explored(self._observer(rule, Meter(upper=MOST), asks))
         ends, _ = _shown(observer, search, ObserverClock.END)
         if not len(ends):
             return None
         earliest = int(ends.min())
         meter = Meter(upper=earliest, most=earliest, goal=(ObserverClock.END, 0))
-        _, search = self.explored(Observer(self.network, rule, meter))
+        _, search = self.explored(self._observer(rule, meter, asks))
         return self._measured(search).run()
 
     def explored(self, observer: Observer) -> tuple[Observer, Search]:
         """Return an observer with a search of its automaton, to the end or to its goal."""
-        search = Search(observer.automaton, 0, observer.first_ages())
+        start = observer.automaton, 0, observer.first_ages()
+        search = Search(*start, is_local=observer.participants is not None)
         search.finish(look)
+        if search.is_far:
+            search = Search(*start)
+            search.finish(look)
         return observer, search
 
     def _measured(self, search: Search) -> Dates:
@@ -398,7 +427,9 @@ class ZoneTimes:
 
         return run_of(search, goal, search.found)
 
-    def _longest(self, rule: Rule, where: ObserverClock, least: int = 0) -> float:
+    def _longest(
+        self, rule: Rule, where: ObserverClock, asks: tuple[Proposition, ...], least: int = 0
+    ) -> float:
         """Return the greatest value of the observer's clock in one of its states.
 
         The clock is counted up to a constant, which grows until the value is certain. It is infinite if some run to
@@ -406,9 +437,8 @@ class ZoneTimes:
         """
         most = max(least, self.enough)
         while True:
-            observer, search = self.explored(
-                Observer(self.network, rule, Meter(most + 1, goal=(where, most + 1)))
-            )
+            meter = Meter(most + 1, goal=(where, most + 1))
+            observer, search = self.explored(self._observer(rule, meter, asks))
             if search.found < 0:
                 return float(_shown(observer, search, where)[1].max(initial=NEVER))
             if self.goes_round(observer, self._measured(search)):

@@ -13,7 +13,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from checker.engines.fast.jit_decorators import inner, njit
+from checker.engines.fast.jit_decorators import njit
 
 Matrix = NDArray[np.int32]
 
@@ -60,13 +60,6 @@ def restrict(d: Matrix, size: int, i: int, j: int, bound: int) -> bool:
 
 
 @njit(cache=True)
-def let_pass(d: Matrix, size: int, clocks: Matrix, most: Matrix) -> None:
-    """Let time pass up to the deadlines; no clock may exceed its deadline before."""
-    d[1:size, 0] = FREE
-    end(d, size, clocks, most)
-
-
-@inner(cache=True)
 def end(d: Matrix, size: int, clocks: Matrix, most: Matrix) -> None:
     """Intersect with the deadlines; the result must not be empty."""
     for i in range(1, size):

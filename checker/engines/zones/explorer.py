@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from checker.engines.contract import Exploration, Inspect, Options, Progress, TickError, sample
+from checker.engines.contract import Exploration, Inspect, Options, Progress, TickError, ZoneClock, sample
 from checker.engines.fast.compile_progress import compilation_uncounted
 from checker.engines.fast.expander import Expander
 from checker.engines.made_on_access import MadeOnAccess
@@ -24,10 +24,16 @@ from checker.engines.zones.timed_checkpoint import resume, save
 from checker.engines.zones.zone_inspection import inspect_zones
 from checker.engines.zones.zone_search import CHUNK, Search
 from checker.limits import Bound, BoundMet, Limits, Stop, bounded, is_full
+from semantics.behaviours.statements import Spawn
 from semantics.state.configuration import Configuration
+from semantics.state.setting import Scheduler
 
 if TYPE_CHECKING:
     from checker.reduction.reducer import Reduced
+
+
+FEW = 64
+"""The zones in local time before the first look at what is shared; then twice as many each time."""
 
 
 class _Files:
@@ -45,6 +51,8 @@ class _Files:
         self.digest = self.keeping.digest
         if options.reduce is not None:  # it reaches other rows
             self.digest += f", {options.reduce.identity}"
+        if network.participants is not None:  # it may reach more rows before it knows all participants
+            self.digest += ", local time"
         self.seconds, self.kept = 0.0, time.monotonic()
 
     def begin(self) -> None:
@@ -80,7 +88,8 @@ class _Learning(Search):
 
     def __init__(self, network: Network) -> None:
         self.network = network
-        super().__init__(network.automaton, network.first, network.first_ages)
+        is_local = network.participants is not None
+        super().__init__(network.automaton, network.first, network.first_ages, is_local=is_local)
 
     def learn(self) -> None:
         """Work out the edges of all reached locations."""
@@ -93,12 +102,14 @@ def explore_in_zones(initial: Configuration, inspect: Iterable[Inspect], options
     Raises:
         TickError: A constant is too large.
     """
-    started = time.monotonic()
+    inspect, started = tuple(inspect), time.monotonic()
     found, uncounted = Exploration([], []), options.limits.uncounted
     try:
         with compilation_uncounted(options) as counted:
             uncounted = counted.limits.uncounted
-            network = Network(initial, options.limits.pending, _exchange(options))
+            network = Network(
+                initial, options.limits.pending, _exchange(options), local=_is_local(initial, options)
+            )
             files = _Files(network, counted)
             files.begin()
             started -= files.seconds
@@ -116,6 +127,10 @@ def explore_in_zones(initial: Configuration, inspect: Iterable[Inspect], options
     except ConstantTooLargeError as error:
         raise TickError(str(error)) from error
     times = ZoneTimes(network, search)
+    if search.is_local and (search.is_far or network.crowded(times.reached)):
+        spent = options.limits.spent + time.monotonic() - started
+        limits = replace(options.limits, spent=spent)
+        return explore_in_zones(initial, inspect, replace(options, clock=ZoneClock.GLOBAL, limits=limits))
     if network.crowded(times.reached):
         found.bounds.append(options.limits.bound(Stop.PENDING))
     _summarise(times, found)
@@ -125,6 +140,18 @@ def explore_in_zones(initial: Configuration, inspect: Iterable[Inspect], options
         found.start = initial
     found.seconds, found.compiling = time.monotonic() - started, uncounted.seconds
     return found
+
+
+def _is_local(initial: Configuration, options: Options) -> bool:
+    """Whether to search in local time: it is sound without an order of all requests, exchanges, and new agents."""
+    setting = initial.setting
+    return (
+        options.clock is ZoneClock.LOCAL
+        and len(initial.alpha.names()) + len(setting.environment) > 1
+        and setting.scheduler is not Scheduler.FCFS
+        and _exchange(options) is None
+        and not any(isinstance(each, Spawn) for each in setting.program.statements)
+    )
 
 
 def _exchange(options: Options) -> ClockExchange | None:
@@ -152,9 +179,13 @@ def _visit_all(
     network: Network, search: Search, files: _Files, found: Exploration, options: Options, started: float
 ) -> None:
     reported, goes_on = started, True
-    most = options.limits.configurations
+    most, zones = options.limits.configurations, FEW if search.is_local else CHUNK
     while goes_on:
-        goes_on = search.advance(CHUNK if most is None else min(CHUNK, max(most - search.count, 0) + 1))
+        zones = min(2 * zones, CHUNK)  # what is shared shows early
+        goes_on = search.advance(zones if most is None else min(zones, max(most - search.count, 0) + 1))
+        network.settle()
+        if search.is_far:
+            return
         if network.outgrown:  # a constant has grown: zones were extrapolated too far
             network.outgrown = False
             search.again()

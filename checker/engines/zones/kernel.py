@@ -7,6 +7,11 @@ own layer are dropped.
 
 The search for the first run to a goal (`checker.engines.timed.first_runs`) proceeds by groups instead. A group is the
 set of zones that one sequence of steps reaches, in the order of sequences within a layer; it drops no kept zone.
+
+There is one clock for all processes, or a date for each. A *dated* zone bounds the differences between these dates and
+the starts of clocks. Its index i below the number of processes stands for a process, the following ones for clocks. A
+step makes the dates of its participants equal; then each of them waits by itself. The *ages* of a zone are its clocks
+where all dates are equal: they are compared and kept. With one clock both matrices are the same.
 """
 
 # mypy: disable-error-code="return-value, assignment, arg-type"
@@ -18,7 +23,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from checker.engines.fast.jit_decorators import inner, njit
-from checker.engines.zones.difference_bounds import Matrix, end, extrapolate, let_pass, restrict
+from checker.engines.zones.difference_bounds import FREE as MISSING
+from checker.engines.zones.difference_bounds import Matrix, end, extrapolate, restrict
 from checker.engines.zones.timed_automaton import (
     CLOCKS,
     DEADLINE,
@@ -28,6 +34,7 @@ from checker.engines.zones.timed_automaton import (
     EDGES,
     EDGES_END,
     FIRST,
+    FOOTPRINT,
     GOAL,
     LEAST,
     LOCATION,
@@ -47,7 +54,10 @@ State = NDArray[np.int64]
 class CompiledAutomaton(NamedTuple):
     """A timed automaton for the loops; see `Automaton`.
 
-    `left` holds for each location the least number of steps to the goal, 0 where it is unknown.
+    Attributes:
+        left: For each location the least number of steps to the goal, 0 where it is unknown.
+        takes_from, takes: For each footprint the range of its participants, and those.
+        processes: The number of processes with a date; 1 for one clock.
     """
 
     locations: Ints
@@ -60,14 +70,18 @@ class CompiledAutomaton(NamedTuple):
     upper: Ints
     rows: Ints
     left: Ints
+    takes_from: Ints
+    takes: Ints
+    processes: int
 
 
 class Zones(NamedTuple):
     """The reached zones.
 
     Attributes:
-        bounds: The matrices, one after the other.
+        bounds: The matrices of ages, one after the other.
         begins: The start of each zone's matrix.
+        dated, dated_from: With several processes, the dated matrices of the last two layers, and their starts.
         sums: The sum of its bounds; an including zone has at least the same sum.
         places: Its location.
         following: The next zone of its location in the list for inclusion tests; `COVERED` for a zone included in
@@ -81,6 +95,8 @@ class Zones(NamedTuple):
 
     bounds: Ints
     begins: State
+    dated: Ints
+    dated_from: State
     sums: State
     places: Ints
     following: Ints
@@ -95,48 +111,108 @@ COVERED = -2
 GROUP, RANK = 3, 2
 BEFORE, BY, BEGIN = range(GROUP)
 
-AT, LAYER, DEPTH, COUNT, USED, FOUND, MISSED, GROUPS, RANKED, LONGEST, STATE = range(11)
+AT, LAYER, DEPTH, COUNT, USED, FOUND, MISSED, GROUPS, RANKED, LONGEST, DATED, FAR, STATE = range(13)
 """Indices of a state.
 
 `AT` is the next zone, or group, to expand. `LAYER` is the first zone of the layer under construction, `DEPTH` its
 depth. `COUNT`, `USED`, `GROUPS` and `RANKED` count zones, bounds, groups and discovered rows. `FOUND` is the depth of
-the goal, -1 before. `MISSED` is the number of zones without room, and `LONGEST` the most steps.
+the goal, -1 before. `MISSED` is the number of zones without room, and `LONGEST` the most steps. `DATED` counts the
+bounds of dated matrices; `FAR` is 1 once dates are too far apart to be counted.
 """
+
+FARTHEST = MISSING >> 1
+"""The largest finite bound of a dated matrix."""
+
+MOST_LATE = 4
+"""The most participants of a step that may be past a deadline after it; with more, dates are given up (`FAR`)."""
 
 DONE, MISS, FULL = range(3)
 """Why the loops return; at a MISS the edges of the next location are unknown."""
 
 
 @njit(cache=True, forceinline=True)
-def load(z: Zones, zone: int, size: int, d: Matrix) -> None:
+def load(bounds: Ints, at: int, size: int, d: Matrix) -> None:
     """Copy a zone into a matrix."""
-    at = z.begins[zone]
     for i in range(size):
         for j in range(size):
-            d[i, j] = z.bounds[at + i * size + j]
+            d[i, j] = bounds[at + i * size + j]
 
 
 @inner(cache=True)
-def meets(m: CompiledAutomaton, edge: int, d: Matrix, size: int) -> bool:
-    """Intersect a matrix with the guard of an edge; False for an empty result."""
-    for k in range(m.edges[edge + TESTS], m.edges[edge + TESTS_END]):
-        clock, least, most = m.tests[TEST * k], m.tests[TEST * k + 1], m.tests[TEST * k + 2]
-        if least > 0 and not restrict(d, size, 0, clock, -least):
+def meet_up(m: CompiledAutomaton, begin: int, last: int, d: Matrix, size: int, ways: Matrix) -> bool:
+    """Make the dates of participants equal; False for an empty result."""
+    for i in range(size):
+        ways[0, i], ways[1, i] = MISSING, MISSING
+        for k in range(begin, last):
+            ways[0, i] = min(ways[0, i], d[i, m.takes[k]])
+            ways[1, i] = min(ways[1, i], d[m.takes[k], i])
+    for k in range(begin, last):
+        if ways[0, m.takes[k]] < 0:
             return False
-        if most >= 0 and not restrict(d, size, clock, 0, most):
+    for i in range(size):
+        if ways[0, i] < MISSING:
+            for j in range(size):
+                if ways[1, j] < MISSING:
+                    d[i, j] = min(d[i, j], ways[0, i] + ways[1, j])
+        if d[i, i] < 0:
             return False
     return True
 
 
 @inner(cache=True)
-def before_rank(m: CompiledAutomaton, z: Zones, state: State) -> int:
-    """Return the rank of the row that is expanded, 0 at first."""
-    return 0 if state[RANKED] == 0 or state[GROUPS] > 0 else np.int64(z.ranks[m.rows[z.places[state[AT]]]])
+def see_ages(d: Matrix, size: int, processes: int, ages: Matrix) -> bool:
+    """Write the ages of a dated matrix, whose processes have clocks from `processes` on; False for none."""
+    for p in range(processes):
+        for q in range(processes):
+            if d[p, q] < 0:
+                return False
+    own = processes - 1
+    ages[0, 0] = 0
+    for i in range(processes, size):
+        ages[i - own, 0], ages[0, i - own] = MISSING, MISSING
+        for p in range(processes):
+            ages[i - own, 0] = min(ages[i - own, 0], d[i, p])
+            ages[0, i - own] = min(ages[0, i - own], d[p, i])
+    for i in range(processes, size):
+        for j in range(processes, size):
+            ages[i - own, j - own] = d[i, j]
+            if processes > 1 and ages[i - own, 0] < MISSING and ages[0, j - own] < MISSING:
+                ages[i - own, j - own] = min(d[i, j], ages[i - own, 0] + ages[0, j - own])
+        if ages[i - own, i - own] < 0:
+            return False
+    return True
 
 
 @inner(cache=True)
-def keep(m: CompiledAutomaton, z: Zones, state: State, location: int, d: Matrix, size: int) -> None:
-    """Keep a zone, unless another one includes it."""
+def meets(m: CompiledAutomaton, edge: int, d: Matrix, size: int, process: int, own: int) -> bool:
+    """Intersect a matrix with the guard of an edge, at the date of a process; False for an empty result."""
+    for k in range(m.edges[edge + TESTS], m.edges[edge + TESTS_END]):
+        clock, least, most = own + m.tests[TEST * k], m.tests[TEST * k + 1], m.tests[TEST * k + 2]
+        if least > 0 and not restrict(d, size, process, clock, -least):
+            return False
+        if most >= 0 and not restrict(d, size, clock, process, most):
+            return False
+    return True
+
+
+@njit(cache=True)
+def discover(m: CompiledAutomaton, z: Zones, state: State, location: int) -> None:
+    """Note the row of a location as discovered from the row that is expanded, unless it was before."""
+    row = m.rows[location]
+    if z.ranks[row] < 0:
+        before = np.int64(0)
+        if state[RANKED] > 0 and state[GROUPS] == 0:
+            before = np.int64(z.ranks[m.rows[z.places[state[AT]]]])
+        z.ranks[row] = state[RANKED]
+        z.order[RANK * state[RANKED]], z.order[RANK * state[RANKED] + 1] = row, before
+        state[RANKED] += 1
+
+
+@inner(cache=True)
+def keep(
+    m: CompiledAutomaton, z: Zones, state: State, location: int, d: Matrix, size: int, dated: Matrix
+) -> None:
+    """Keep a zone with these ages and its dated matrix, unless the ages of another one include its own."""
     at = LOCATION * location
     total = np.int64(0)
     for i in range(size):
@@ -174,78 +250,163 @@ def keep(m: CompiledAutomaton, z: Zones, state: State, location: int, d: Matrix,
     z.heads[location] = new
     state[COUNT] += 1
     state[USED] += size * size
-    row = m.rows[location]
-    if z.ranks[row] < 0:
-        z.ranks[row] = state[RANKED]
-        z.order[RANK * state[RANKED]], z.order[RANK * state[RANKED] + 1] = row, before_rank(m, z, state)
-        state[RANKED] += 1
+    if m.processes > 1:
+        keep_dated(z, state, new, dated, size + m.processes - 1)
     goal = m.locations[at + GOAL]
     if goal >= 0 and state[FOUND] < 0 and d[goal, 0] >= m.locations[at + LEAST]:
         state[FOUND] = state[DEPTH]
 
 
-@njit(cache=True)
-def enter(
-    m: CompiledAutomaton, z: Zones, state: State, location: int, d: Matrix, e: Matrix, bounds: Matrix
-) -> None:
-    """Keep the zone entered in a location, and its closure under delays."""
-    at = LOCATION * location
-    size = m.locations[at + SIZE]
-    begin, count = m.locations[at + DEADLINES], m.locations[at + DEADLINES_END] - m.locations[at + DEADLINES]
-    deadlines, lower, upper = bounds[:2], bounds[2], bounds[3]
-    for i in range(1, size):
-        clock = m.clocks[m.locations[at + CLOCKS] + i - 1]
-        lower[i], upper[i] = m.lower[clock], m.upper[clock]
-    within = True
-    for k in range(count):
-        deadlines[0, k] = m.deadlines[DEADLINE * (begin + k)]
-        deadlines[1, k] = m.deadlines[DEADLINE * (begin + k) + 1]
-        within = within and d[deadlines[0, k], 0] <= deadlines[1, k]
-    if not within:
-        for i in range(size):
-            for j in range(size):
-                e[i, j] = d[i, j]
-        extrapolate(e, size, lower, upper)
-        keep(m, z, state, location, e, size)
-        for k in range(count):
-            if deadlines[1, k] < 0 or not restrict(d, size, deadlines[0, k], 0, deadlines[1, k]):
-                return
-    let_pass(d, size, deadlines[0, :count], deadlines[1, :count])
-    extrapolate(d, size, lower, upper)
-    end(d, size, deadlines[0, :count], deadlines[1, :count])
-    keep(m, z, state, location, d, size)
+@inner(cache=True)
+def keep_dated(z: Zones, state: State, zone: int, dated: Matrix, size: int) -> None:
+    """Keep the dated matrix of a zone."""
+    begin = state[DATED]
+    for i in range(size):
+        for j in range(size):
+            bound = dated[i, j]
+            if bound < MISSING and (bound > FARTHEST or bound < -FARTHEST):
+                state[FAR] = 1
+            z.dated[begin + i * size + j] = bound
+    z.dated_from[zone] = begin
+    state[DATED] += size * size
 
 
 @inner(cache=True)
-def follow(
-    m: CompiledAutomaton,
-    z: Zones,
-    state: State,
-    zone: int,
-    edge: int,
-    d: Matrix,
-    e: Matrix,
-    f: Matrix,
-    bounds: Matrix,
+def deadline_of(m: CompiledAutomaton, deadline: int) -> tuple[int, int, int]:
+    """Return the index of a deadline's clock in a dated matrix, that of its process, and its bound."""
+    clock, most, process = (
+        np.int64(m.deadlines[DEADLINE * deadline]),
+        np.int64(m.deadlines[DEADLINE * deadline + 1]),
+        np.int64(m.deadlines[DEADLINE * deadline + 2]),
+    )
+    if m.processes == 1:
+        process = np.int64(0)
+    return process if clock == 0 else clock + m.processes - 1, process, most
+
+
+@inner(cache=True)
+def waits(late: Ints, chosen: int, process: int) -> bool:
+    """Return whether a process waits: a participant that is not late, or that is in time as `chosen` has its bit."""
+    return bool(late[process] == 0 or (late[process] > 0 and chosen >> (late[process] - 1) & 1))
+
+
+@inner(cache=True)
+def wait(
+    m: CompiledAutomaton, begin: int, last: int, first: int, end_: int, late: Ints, chosen: int, d: Matrix, size: int
+) -> bool:  # fmt: skip
+    """Let participants wait up to their own deadlines, which they keep; False if that is impossible.
+
+    A participant that may be late (`late` has its number, from 1) stands still unless it is chosen to be in time.
+    """
+    for k in range(begin, last):
+        clock, process, most = deadline_of(m, k)
+        if waits(late, chosen, process) and not restrict(d, size, clock, process, most):
+            return False
+    for k in range(first, end_):
+        if waits(late, chosen, m.takes[k]):
+            for i in range(size):
+                if i != m.takes[k]:
+                    d[i, m.takes[k]] = MISSING
+    for k in range(begin, last):
+        clock, process, most = deadline_of(m, k)
+        if waits(late, chosen, process):
+            for i in range(size):
+                if i != process and d[i, clock] < MISSING:
+                    d[i, process] = min(d[i, process], d[i, clock] + most)
+    return True
+
+
+@njit(cache=True)
+def enter(
+    m: CompiledAutomaton, z: Zones, state: State, location: int, first: int, end_: int, s: "Scratch"
 ) -> None:
+    """Keep the zone entered in a location by its participants, in `s.e`, and its closure under their delays."""
+    at = LOCATION * location
+    clocks = m.locations[at + SIZE]
+    size = clocks + m.processes - 1
+    begin, last = m.locations[at + DEADLINES], m.locations[at + DEADLINES_END]
+    deadlines, lower, upper = s.bounds[:2], s.bounds[2], s.bounds[3]
+    for i in range(1, clocks):
+        clock = m.clocks[m.locations[at + CLOCKS] + i - 1]
+        lower[i], upper[i] = m.lower[clock], m.upper[clock]
+    s.late[: m.processes] = -1
+    for k in range(first, end_):
+        s.late[m.takes[k]] = 0
+    count = np.int64(0)
+    for k in range(begin, last):
+        deadlines[0, k - begin], deadlines[1, k - begin] = (
+            m.deadlines[DEADLINE * k],
+            m.deadlines[DEADLINE * k + 1],
+        )
+        clock, process, most = deadline_of(m, k)
+        if s.late[process] == 0 and s.e[clock, process] > most:
+            count += 1
+            s.late[process] = count
+    if count > MOST_LATE:
+        state[FAR] = 1
+        return
+    for chosen in range(1 << count):
+        d = s.e
+        if count > 0:
+            d = s.d
+            for i in range(size):
+                for j in range(size):
+                    d[i, j] = s.e[i, j]
+        if not wait(m, begin, last, first, end_, s.late, chosen, d, size):
+            continue
+        ages = d
+        if m.processes > 1:
+            ages = s.f
+            if not see_ages(d, size, m.processes, ages):
+                continue
+        within = True
+        for k in range(begin, last):
+            clock, process, most = deadline_of(m, k)
+            within = within and d[clock, process] <= most
+        extrapolate(ages, clocks, lower, upper)
+        if within:
+            end(ages, clocks, deadlines[0, : last - begin], deadlines[1, : last - begin])
+        keep(m, z, state, location, ages, clocks, d)
+
+
+@inner(cache=True)
+def follow(m: CompiledAutomaton, z: Zones, state: State, zone: int, edge: int, s: "Scratch") -> None:
     """Keep the successor of a zone by an edge, if its distance from the goal is small enough."""
     target, sources = m.edges[edge + TARGET], m.edges[edge + SOURCES] - 1
     if state[DEPTH] + m.left[target] > state[LONGEST]:
         return
-    size = m.locations[LOCATION * z.places[zone] + SIZE]
-    load(z, zone, size, d)
-    if not meets(m, edge, d, size):
+    clocks, own = m.locations[LOCATION * z.places[zone] + SIZE], m.processes - 1
+    d, e, first, end_ = s.d, s.e, np.int64(0), np.int64(1)
+    taken = m.edges[edge + FIRST] >= 0
+    if own == 0:
+        load(z.bounds, z.begins[zone], clocks, d)
+    else:
+        if not taken:
+            load(z.bounds, z.begins[zone], clocks, d)
+            taken = meets(m, edge, d, clocks, 0, 0)
+        load(z.dated, z.dated_from[zone], clocks + own, d)
+        footprint = m.edges[edge + FOOTPRINT]
+        first, end_ = np.int64(m.takes_from[footprint]), np.int64(m.takes_from[footprint + 1])
+        if not meet_up(m, first, end_, d, clocks + own, s.bounds):
+            return
+    now = np.int64(m.takes[first])
+    if not meets(m, edge, d, clocks + own, now, own):
         return
-    if m.edges[edge + FIRST] < 0:
-        m.edges[edge + FIRST] = state[DEPTH] - 1
-    after = m.locations[LOCATION * target + SIZE]
-    e[0, 0] = 0
-    for i in range(1, after):
-        one = m.sources[sources + i]
-        e[i, 0], e[0, i] = d[one, 0], d[0, one]
-        for j in range(1, after):
-            e[i, j] = 0 if i == j else d[one, m.sources[sources + j]]
-    enter(m, z, state, target, e, f, bounds)
+    if own == 0 or taken:
+        if m.edges[edge + FIRST] < 0:
+            m.edges[edge + FIRST] = state[DEPTH] - 1
+        discover(m, z, state, target)
+    after = m.locations[LOCATION * target + SIZE] + own
+    for i in range(after):
+        one = np.int64(i)
+        if i > own:
+            one = np.int64(m.sources[sources + i - own])
+            one = now if one == 0 else one + own
+        s.bounds[0, i] = one
+    for i in range(after):
+        for j in range(after):
+            e[i, j] = 0 if i == j else d[s.bounds[0, i], s.bounds[0, j]]
+    enter(m, z, state, target, first, end_, s)
 
 
 @inner(cache=True)
@@ -261,12 +422,13 @@ def ways_of(m: CompiledAutomaton, z: Zones, begin: int, last: int) -> int:
 
 
 @inner(cache=True)
-def is_full(z: Zones, state: State, ways: int, largest: int) -> bool:
+def is_full(m: CompiledAutomaton, z: Zones, state: State, ways: int, largest: int) -> bool:
     """Return whether the successors by so many edges may exceed the room."""
-    room = state[MISSED] = 2 * ways
+    room = state[MISSED] = (2 if m.processes == 1 else 1 << MOST_LATE) * ways
     return bool(
         state[COUNT] + room > len(z.begins)
         or state[USED] + room * largest * largest > len(z.bounds)
+        or state[DATED] + room * largest * largest > len(z.dated)
         or GROUP * (state[GROUPS] + ways + 1) > len(z.groups)
     )
 
@@ -292,6 +454,7 @@ class Scratch(NamedTuple):
     e: Matrix
     f: Matrix
     bounds: Matrix
+    late: Ints
 
 
 @inner(cache=True)
@@ -301,7 +464,7 @@ def take(m: CompiledAutomaton, z: Zones, state: State, begin: int, last: int, st
         at = LOCATION * z.places[zone]
         for edge in range(EDGE * m.locations[at + EDGES], EDGE * m.locations[at + EDGES_END], EDGE):
             if m.edges[edge + STEP] == step:
-                follow(m, z, state, zone, edge, s.d, s.e, s.f, s.bounds)
+                follow(m, z, state, zone, edge, s)
 
 
 @njit(cache=True)
@@ -315,7 +478,7 @@ def advance(m: CompiledAutomaton, z: Zones, state: State, largest: int, until: i
         ways = ways_of(m, z, begin, last)
         if ways < 0:
             return MISS
-        if is_full(z, state, ways, largest):
+        if is_full(m, z, state, ways, largest):
             return FULL
         step = next_step(m, z, begin, last, -1)
         while step >= 0:
@@ -350,6 +513,23 @@ def arrange(m: CompiledAutomaton, z: Zones, state: State, kept: State) -> None:
             z.bounds[used + i] = bounds[begins[old] - begins[0] + i]
         used += size * size
     state[USED], state[COUNT] = used, begin + len(kept)
+    if m.processes > 1:
+        arrange_dated(m, z, state, kept, renamed)
+
+
+@njit(cache=True, _nrt=True)
+def arrange_dated(m: CompiledAutomaton, z: Zones, state: State, kept: State, renamed: State) -> None:
+    """Keep the dated matrices of these zones of the layer under construction alone; those before it are expanded."""
+    begin, used = state[LAYER], np.int64(0)
+    dated, dated_from = z.dated[: state[DATED]].copy(), z.dated_from[begin : begin + len(renamed)].copy()
+    for k in range(len(kept)):
+        size = np.int64(m.locations[LOCATION * z.places[begin + k] + SIZE]) + m.processes - 1
+        at = dated_from[kept[k] - begin]
+        for i in range(size * size):
+            z.dated[used + i] = dated[at + i]
+        z.dated_from[begin + k] = used
+        used += size * size
+    state[DATED] = used
 
 
 @njit(cache=True)
@@ -362,7 +542,7 @@ def advance_by_groups(
         begin = z.groups[GROUP * group + BEGIN]
         last = z.groups[GROUP * (group + 1) + BEGIN] if group + 1 < state[GROUPS] else state[COUNT]
         ways = ways_of(m, z, begin, last)
-        if is_full(z, state, ways, largest):
+        if is_full(m, z, state, ways, largest):
             return FULL
         step = next_step(m, z, begin, last, -1)
         while step >= 0:

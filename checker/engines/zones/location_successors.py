@@ -42,6 +42,7 @@ from checker.engines.zones.location_views import (
     LocationView,
     find_steps,
 )
+from checker.engines.zones.step_footprints import look_round, note_footprint, put_footprints
 from checker.engines.zones.timed_automaton import DEADLINE, EDGE, LOCATION, TEST
 from semantics.timing.actor_clocks import BOUND
 from semantics.timing.actor_clocks import FREE as UNBOUND
@@ -95,24 +96,25 @@ def add_location(
         number >= len(g.rows)
         or LOCATION * (number + 1) > len(g.locations)
         or s[CLOCKED] + size > len(g.clocks)
-        or DEADLINE * (s[DEADLINED] + size + 1) > len(g.deadlines)
+        or DEADLINE * (s[DEADLINED] + size + len(t.windows) + 1) > len(g.deadlines)
     ):
         return -1
     at, begin, stamp = s[CLOCKED], s[DEADLINED], v.counts[STAMP]
     end = add_deadlines(m, t, g, v, windows, begin)
-    index = np.int64(0)
+    index, vehicles, agents = np.int64(0), len(t.vehicles), v.counts[AGENTS]
     for clock in t.lasting:
         g.clocks[at + index] = clock
         index += 1
-    for k in range(len(t.vehicles) + v.counts[ACTORS]):
-        record = ANSWER * v.answers[k]
+    for k in range(vehicles + v.counts[ACTORS]):
+        record, process = ANSWER * v.answers[k], k - vehicles - agents + (agents >> 1)
+        if k < vehicles + agents:
+            process = (k - vehicles) % max(agents >> 1, 1)
         for run in range(t.answers[record], t.answers[record + 1]):
             clock, most = t.running[RUNNING * run + CLOCK], t.running[RUNNING * run + HI]
             g.clocks[at + index] = clock
             index += 1
             if not v.counts[IS_CROWDED] and most >= 0 and v.bound[clock] == stamp and v.at[clock] == index:
-                g.deadlines[DEADLINE * end], g.deadlines[DEADLINE * end + 1] = index, most
-                end += 1
+                end = put_deadline(g, end, index, most, process)
     record = LOCATION * number
     g.locations[record + automata.SIZE], g.locations[record + automata.CLOCKS] = size, at
     g.locations[record + automata.DEADLINES], g.locations[record + automata.DEADLINES_END] = begin, end
@@ -129,20 +131,25 @@ def add_location(
 def add_deadlines(
     m: LearnedModel, t: LearnedClocks, g: AutomatonGrowth, v: LocationView, windows: int, begin: int
 ) -> int:
-    """Add the deadline of a crowded location, or else of the windows; return the end of the deadlines."""
-    least = np.int64(NONE)
-    for window in range(len(t.windows) // WINDOW):
-        within = np.int64(t.windows[WINDOW * window + 1])
-        bound = steps_of_clause(m, v, t.windows[WINDOW * window]) > 0 and digit(windows, window) < UNBOUND
-        if within >= 0 and bound and (least < 0 or within < least):
-            least = within
-    clock = np.int64(1)  # the mission's clock is the first
+    """Add the deadline of a crowded location, or else those of the windows; return the end of the deadlines."""
     if v.counts[IS_CROWDED]:
-        clock, least = np.int64(0), np.int64(NONE)
-    elif least < 0:
-        return begin
-    g.deadlines[DEADLINE * begin], g.deadlines[DEADLINE * begin + 1] = clock, least
-    return begin + 1
+        return put_deadline(g, begin, 0, NONE, 0)
+    end = np.int64(begin)
+    for window in range(len(t.windows) // WINDOW):
+        clause, within = np.int64(t.windows[WINDOW * window]), np.int64(t.windows[WINDOW * window + 1])
+        if within >= 0 and steps_of_clause(m, v, clause) > 0 and digit(windows, window) < UNBOUND:
+            end = put_deadline(
+                g, end, 1, within, (v.counts[AGENTS] >> 1) + clause
+            )  # the mission's clock is the first
+    return end
+
+
+@inner(cache=True)
+def put_deadline(g: AutomatonGrowth, deadline: int, clock: int, most: int, process: int) -> int:
+    """Add a deadline; return the end of the deadlines."""
+    at = DEADLINE * deadline
+    g.deadlines[at], g.deadlines[at + 1], g.deadlines[at + 2] = clock, most, process
+    return deadline + 1
 
 
 @inner(cache=True)
@@ -283,7 +290,7 @@ def add_edges(  # each argument is another part of the state
             g.edges[at + automata.STEP], g.edges[at + automata.TARGET] = number, target
             g.edges[at + automata.TESTS], g.edges[at + automata.TESTS_END] = fresh, s[TESTED]
             g.edges[at + automata.SOURCES], g.edges[at + automata.LEARNED] = s[SOURCED], step
-            g.edges[at + automata.FIRST] = NONE
+            g.edges[at + automata.FIRST] = g.edges[at + automata.FOOTPRINT] = NONE
             add_sources(t, n, g, a, b, done, end, target, choices, count, chosen, s)
             s[LEAVING] += 1
     return KNOWN
@@ -349,11 +356,12 @@ def begin(
 @njit(cache=True)
 def leave(
     m: LearnedModel, t: LearnedClocks, g: AutomatonGrowth, a: LocationView, b: LocationView,
-    x: Any, d: Any, i: Any, n: Any, words: Words, f: FoldedTable | None, origins: Any, table: Any, most: int,
+    p: Any, x: Any, d: Any, i: Any, n: Any, words: Words, f: FoldedTable | None, origins: Any, table: Any, most: int,
     target: Words, kept: Words, taken: Ints, choices: Ints, locations: State, state: State, s: State,
 ) -> int:  # fmt: skip
     """Add the edges of the given locations, from the next undone one; return why that ended.
 
+    With `p` (`LearnedFootprints`) their footprints are noted, which no exchange has renamed.
     With symmetry, representatives replace targets: `x` and `d` are the tables and scratch space of `canonicalise`, `i`
     and `n` those of `clock_images`.
     """
@@ -369,7 +377,7 @@ def leave(
         why = KNOWN
         if not a.counts[IS_CROWDED]:
             why = leave_by_steps(
-                m, t, g, a, b, x, d, i, n, words, source, at, f, origins, table, most, target, kept, taken, choices,
+                m, t, g, a, b, p, x, d, i, n, words, source, at, f, origins, table, most, target, kept, taken, choices,
                 here, row, state, s,
             )  # fmt: skip
         if why != KNOWN:
@@ -404,12 +412,14 @@ def is_target(
 @inner(cache=True)
 def leave_by_steps(
     m: LearnedModel, t: LearnedClocks, g: AutomatonGrowth, a: LocationView, b: LocationView,
-    x: Any, d: Any, i: Any, n: Any,
+    p: Any, x: Any, d: Any, i: Any, n: Any,
     words: Words, source: Words, at: int, f: FoldedTable | None, origins: Any, table: Any, most: int,
     target: Words, kept: Words, taken: Ints, choices: Ints, here: int, row: int, state: State, s: State,
 ) -> int:  # fmt: skip
     """Add the edges of each in-turn step of a location; equal steps of an agent count once."""
     number = np.int64(0)
+    if p is not None:
+        look_round(t, p, a)
     for k in range(a.counts[ACTORS]):
         leaf, record = LEAF * a.leaves[k], ANSWER * a.answers[len(t.vehicles) + k]
         first, own = np.int64(m.leaves[leaf + FIRST]), number
@@ -443,8 +453,12 @@ def leave_by_steps(
             if x is not None and not note_names(t, i, n, d.place, b):
                 state[NODE] = UNNAMED
                 return MISS
-            times = TIMES * (t.answers[record + 2] + step - first)
+            times, edges = TIMES * (t.answers[record + 2] + step - first), s[LEAVING]
             if add_edges(m, t, n, g, a, b, here, to, times, number, step, choices, s) == FULL:
                 return FULL
+            if p is not None:
+                note_footprint(m, t, p, a, b, k, step, source, at, state)
+                if not put_footprints(p, edges, s[LEAVING]):
+                    return FULL
             number += 1
     return KNOWN

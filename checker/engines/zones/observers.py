@@ -7,7 +7,11 @@ from dataclasses import dataclass, field
 from enum import Enum, auto
 from typing import NamedTuple
 
+import numpy as np
+from numpy.typing import NDArray
+
 from checker.engines.zones.difference_bounds import NONE
+from checker.engines.zones.participants import WatchedParticipants
 from checker.engines.zones.timed_automaton import Constraint, Edge, Location, TimedAutomaton
 from checker.engines.zones.timed_automaton_of import NOWHERE, Network
 
@@ -59,16 +63,20 @@ class Observer:
         meter: The constants of the clock.
         is_exact: Whether each clock's larger constant serves for both kinds of bounds; extrapolation then adds only
             bisimilar values.
+        reads: In local time the columns that decide the rule in each of the mission's locations; None for one clock.
+        participants: Those of its edges; None for one clock.
     """
 
     network: Network
     rule: Rule
     meter: Meter
     is_exact: bool = False
+    reads: NDArray[np.uint64] | None = None
     automaton: TimedAutomaton = field(default_factory=TimedAutomaton)
     spots: list[ObservedLocation] = field(default_factory=list)
     numbers: dict[ObservedLocation, int] = field(default_factory=dict)
     meter_clock: int = field(init=False)
+    participants: WatchedParticipants | None = field(init=False, default=None)
 
     def __post_init__(self) -> None:
         lower, upper = (
@@ -77,11 +85,15 @@ class Observer:
         for least, most in zip(lower, upper, strict=True):
             self.automaton.clock(*(max(least, most),) * 2 if self.is_exact else (least, most))
         self.meter_clock = self.automaton.clock(self.meter.lower, self.meter.upper)
+        if self.reads is not None and self.network.participants is not None:
+            self.participants = WatchedParticipants(self.network.participants, self.automaton, self.reads)
         watch = self.rule(ObserverClock.OFF, self.network.first)
         assert watch is not None
         self._add(self.network.first, watch)
         for number, spot in enumerate(self.spots):  # grows during the loop
             self.automaton.leave(number, [] if spot.watch is ObserverClock.END else self._edges(spot))
+        if self.participants is not None:
+            self.participants.join()
 
     def clock(self, number: int) -> int:
         """Return the index of the additional clock in a location, 0 where it doesn't run."""
@@ -97,29 +109,33 @@ class Observer:
         spot = ObservedLocation(location, ObserverClock.ON if watch is ObserverClock.START else watch)
         if spot in self.numbers:
             return self.numbers[spot]
-        clocks, deadlines, goal = self.network.automaton.location(location)
+        clocks, _, goal = self.network.automaton.location(location)
+        deadlines = self.network.automaton.deadlines_of(location)
+        process = 0 if self.participants is None else self.participants.process
         if spot.watch is not ObserverClock.OFF:
             clocks = (*clocks, self.meter_clock)
             if self.meter.goal is not None and self.meter.goal[0] is spot.watch:
                 goal = Constraint(len(clocks), self.meter.goal[1])
             if spot.watch is ObserverClock.END:
-                deadlines = (NOWHERE,)
+                deadlines = [[*NOWHERE, process]]
             elif self.meter.most >= 0:
-                deadlines = (*deadlines, (len(clocks), self.meter.most))
+                deadlines.append([len(clocks), self.meter.most, process])
         self.spots.append(spot)
-        number = self.numbers[spot] = self.automaton.add(Location(clocks, deadlines, goal))
+        number = self.numbers[spot] = self.automaton.add(Location(clocks, (), goal), deadlines)
         return number
 
     def _edges(self, spot: ObservedLocation) -> list[Edge]:
         found = []
         clock = len(self.network.automaton.location(spot.location).clocks) + 1
         runs = spot.watch is ObserverClock.ON
-        for step, tests, target, sources in self.network.automaton.out(spot.location):
+        for step, tests, target, sources, footprint in self.network.automaton.out(spot.location):
             watch = self.rule(spot.watch, target)
             if watch is None:
                 continue
             if watch is not ObserverClock.OFF:
                 sources = (*sources, clock if runs and watch is not ObserverClock.START else 0)  # noqa: PLW2901
             late = (Constraint(clock, 0, self.meter.most),) if runs and self.meter.most >= 0 else ()
-            found.append(Edge(step, (*tests, *late), self._add(target, watch), sources))
+            if self.participants is not None:
+                footprint = self.participants.footprint(footprint, spot.location, target)  # noqa: PLW2901
+            found.append(Edge(step, (*tests, *late), self._add(target, watch), sources, footprint))
         return found

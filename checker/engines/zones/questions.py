@@ -9,10 +9,10 @@ import math
 from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
-from checker.engines.fast.value_templates import settled
 from checker.properties.findings import Key
 from checker.properties.inspections import Excerpt, Inspection
 from checker.properties.visited_statements import moment_of, passages
+from checker.recording.value_templates import settled
 from semantics.behaviours.computation import Passage
 from semantics.behaviours.expressions import Fault
 from semantics.races.monitor import CONTROLS

@@ -5,7 +5,7 @@ maps each clock of its target to the clock of its source that continues in it, o
 are dropped.
 """
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import NamedTuple
@@ -36,12 +36,14 @@ class Edge(NamedTuple):
         tests: Its guard, a conjunction.
         target: The target location.
         sources: For each clock of the target the clock that continues in it, 0 for a reset one.
+        footprint: The number of its footprint in local time.
     """
 
     step: int
     tests: tuple[Constraint, ...]
     target: int
     sources: tuple[int, ...]
+    footprint: int = NONE
 
 
 class Location(NamedTuple):
@@ -63,11 +65,11 @@ class ConstantTooLargeError(Exception):
     """A constant that exceeds the largest one for clocks."""
 
 
-LOCATION, EDGE, TEST, DEADLINE = 8, 7, 3, 2
+LOCATION, EDGE, TEST, DEADLINE = 8, 8, 3, 3
 """The length of each kind of record."""
 
 SIZE, CLOCKS, DEADLINES, DEADLINES_END, EDGES, EDGES_END, GOAL, LEAST = range(LOCATION)
-STEP, TARGET, TESTS, TESTS_END, SOURCES, LEARNED, FIRST = range(EDGE)
+STEP, TARGET, TESTS, TESTS_END, SOURCES, LEARNED, FIRST, FOOTPRINT = range(EDGE)
 
 
 def _numbers() -> Growing:
@@ -81,10 +83,13 @@ class TimedAutomaton:
     Attributes:
         locations: Records of `LOCATION` numbers: one more than the count of its clocks, the ranges of its parts, its
             goal.
-        edges: Records of `EDGE` numbers; the last two are the number of the learned step, and the number of steps
-            before the edge was first taken.
+        edges: Records of `EDGE` numbers; the last three are the number of the learned step, the number of steps before
+            the edge was first taken, and the number of its footprint.
+        deadlines: Records of `DEADLINE` numbers: the clock, its bound, and the process that waits no longer.
         lower, upper: For each clock the largest constant of its lower and of its upper bounds.
         rows: The row of each location; the locations of one row are expanded together.
+        takes_from, takes: For each footprint the range of its participants, and those.
+        processes: The number of processes in local time.
         largest: One more than the most clocks of any location.
     """
 
@@ -97,6 +102,9 @@ class TimedAutomaton:
     lower: Growing = field(default_factory=_numbers)
     upper: Growing = field(default_factory=_numbers)
     rows: Growing = field(default_factory=_numbers)
+    takes_from: Growing = field(default_factory=_numbers)
+    takes: Growing = field(default_factory=_numbers)
+    processes: int = 1
     largest: int = 1
 
     def __len__(self) -> int:
@@ -120,12 +128,14 @@ class TimedAutomaton:
         self.lower.room[clock], self.upper.room[clock] = after
         return after != before
 
-    def add(self, location: Location) -> int:
-        """Return the number of a new location, its edges still unknown."""
+    def add(self, location: Location, deadlines: Iterable[Sequence[int]] | None = None) -> int:
+        """Return the number of a new location, its edges still unknown; with `deadlines`, those of processes."""
         begin = len(self.deadlines) // DEADLINE
-        for each in location.deadlines:
-            _look(each[1])
-            self.deadlines.append(*each)
+        for clock, most, process in (
+            ((*each, 0) for each in location.deadlines) if deadlines is None else deadlines
+        ):
+            _look(most)
+            self.deadlines.append(clock, most, process)
         end = len(self.deadlines) // DEADLINE
         clocks = self.clocks.append(*location.clocks)
         goal, least = (NONE, 0) if location.goal is None else location.goal[:2]
@@ -137,31 +147,41 @@ class TimedAutomaton:
     def leave(self, location: int, edges: Iterable[Edge]) -> None:
         """Set the edges of a location, in the order of their steps."""
         begin = len(self.edges) // EDGE
-        for step, tests, target, sources in edges:
+        for step, tests, target, sources, footprint in edges:
             first = len(self.tests) // TEST
             for test in tests:
                 self.tests.append(*test)
             at = self.sources.append(*sources)
-            self.edges.append(step, target, first, len(self.tests) // TEST, at, NONE, NONE)
+            self.edges.append(step, target, first, len(self.tests) // TEST, at, NONE, NONE, footprint)
         self._record(location)[EDGES : EDGES_END + 1] = begin, len(self.edges) // EDGE
 
     def location(self, number: int) -> Location:
         """Return a location."""
-        size, clocks, begin, end, _, _, goal, least = self._record(number).tolist()
-        deadlines = self.deadlines.room[DEADLINE * begin : DEADLINE * end].reshape(-1, DEADLINE).tolist()
+        size, clocks, _, _, _, _, goal, least = self._record(number).tolist()
+        deadlines: dict[int, int] = {}
+        for clock, most, _ in self.deadlines_of(number):
+            deadlines[clock] = min(most, deadlines.get(clock, most))
         numbers = self.clocks.room[clocks : clocks + size - 1].tolist()
         sought = None if goal < 0 else Constraint(goal, least)
-        return Location(tuple(numbers), tuple((clock, most) for clock, most in deadlines), sought)
+        return Location(tuple(numbers), tuple(deadlines.items()), sought)
+
+    def deadlines_of(self, location: int) -> list[list[int]]:
+        """Return the deadlines of a location: the clock, its bound, and the process of each."""
+        begin, end = self._record(location)[DEADLINES : DEADLINES_END + 1].tolist()
+        found: list[list[int]] = (
+            self.deadlines.room[DEADLINE * begin : DEADLINE * end].reshape(-1, DEADLINE).tolist()
+        )
+        return found
 
     def out(self, location: int) -> list[Edge]:
         """Return the edges of a location; none before they are worked out."""
         return [self._edge(each) for each in self._edges(location).tolist()]
 
     def _edge(self, record: list[int]) -> Edge:
-        step, target, begin, end, at = record[: SOURCES + 1]
+        step, target, begin, end, at, _, _, footprint = record
         tests = self.tests.room[TEST * begin : TEST * end].reshape(-1, TEST).tolist()
         sources = self.sources.room[at : at + self._record(target)[SIZE] - 1].tolist()
-        return Edge(step, tuple(Constraint(*each) for each in tests), target, tuple(sources))
+        return Edge(step, tuple(Constraint(*each) for each in tests), target, tuple(sources), footprint)
 
     def _record(self, location: int) -> NDArray[np.int32]:
         return self.locations.room[LOCATION * location : LOCATION * (location + 1)]

@@ -24,7 +24,6 @@ from checker.engines.fast.origins import OriginPages
 from checker.engines.fast.row_store import RowFormat, RowStore
 from checker.engines.fast.rule_model import RuleModel
 from checker.engines.fast.table import most_in
-from checker.engines.fast.value_templates import settled
 from checker.engines.timed.exchanged_clocks import ClockExchange
 from checker.engines.zones import location_successors, location_views
 from checker.engines.zones.clock_images import UNNAMED
@@ -39,6 +38,7 @@ from checker.engines.zones.location_views import (
     LearnedClocks,
     LocationView,
 )
+from checker.engines.zones.participants import Participants
 from checker.engines.zones.timed_automaton import (
     CLOCKS,
     DEADLINE,
@@ -50,6 +50,7 @@ from checker.engines.zones.timed_automaton import (
     TimedAutomaton,
 )
 from checker.limits import look
+from checker.recording.value_templates import settled
 from semantics.environment import Clause
 from semantics.state.configuration import Configuration
 from semantics.state.signature import Name
@@ -98,9 +99,17 @@ class Network:
         first_ages: The clock values of the first location.
         exchange: The exchanges under which representatives replace rows; None for none.
         keys: The clock of each number, with its aim.
+        participants: Those of each edge in local time; None with one clock.
     """
 
-    def __init__(self, initial: Configuration, pending: int, exchange: ClockExchange | None = None) -> None:
+    def __init__(
+        self,
+        initial: Configuration,
+        pending: int,
+        exchange: ClockExchange | None = None,
+        *,
+        local: bool = False,
+    ) -> None:
         self.initial = initial
         self.exchange = exchange
         self.timing = timing_of(initial)
@@ -133,8 +142,12 @@ class Network:
         self.learned_images = None if exchange is None else LearnedImages(self, exchange)
         tables = None if exchange is None else tables_of(self.learner, exchange)
         self.model = RuleModel(self.learner, self.store, tables)
+        self.participants: Participants | None = None
         self.model.followers.append(self._see)
         self.model.see()
+        if local:
+            sizes = (len(self.model.groups[0]), len(self.model.clauses), len(self.restored))
+            self.participants = Participants(self.learner, self.automaton, sizes)
         self.situation = lru_cache(1 << 12)(lambda number: TimedView(self.configuration(number)))
         self.first_ages: tuple[int, ...] = ()
 
@@ -161,6 +174,19 @@ class Network:
 
         self._run(work)
         self.first_ages = self.measured(situation, ages)
+
+    def settle(self) -> None:
+        """Note whether more is shared than the search has supposed; then it is `outgrown`."""
+        if self.participants is None:
+            return
+        if self.participants.is_void:
+            self.counts_of[:] = 0
+            self.of_rows.used[:] = NONE
+            self._measure()
+            self.participants.begin()
+            self.begin()
+            self.outgrown = True
+        self.outgrown |= self.participants.divide()
 
     def leave_again(self, locations: NDArray[np.int64]) -> None:
         """Work out the edges of locations in the order of another network with the same rows.
@@ -194,6 +220,8 @@ class Network:
         self.asked = (agents, clauses, vehicles)
         self._note_answers()
         self._see_clocks()
+        if self.participants is not None:
+            self.participants.see()
 
     def _see_clocks(self) -> None:
         """Update the loops' view of the learned clocks."""
@@ -309,12 +337,17 @@ class Network:
             target = np.zeros(store.packing.words, np.uint64)
             kept = target if folded is None else np.zeros(rows.kept, np.uint64)
             renaming: tuple[object, ...] = (None, None)
+            footprints = None
+            if self.participants is not None:
+                footprints = self.participants.tables(
+                    int(self.counts_of[location_successors.LEAVING]), self.margin
+                )
             if images is not None:
                 kept = np.zeros(max(rows.kept, store.packing.words), np.uint64)
                 renaming = (images.images, images.scratch())
             scratch = target, kept, np.zeros(2 * self.margin, np.int32), choices
             loop: Callable[..., int] = location_successors.leave
-            known = (model, timed, growth, view, other, *self.model.symmetry, *renaming)
+            known = (model, timed, growth, view, other, footprints, *self.model.symmetry, *renaming)
             return loop(*known, *arrays, most, *scratch, locations, store.state, self.counts_of)
 
         self._run(work)
@@ -331,6 +364,10 @@ class Network:
             done = self.counts_of.copy()
             why = loop(self.model.loops, self.timed, self._growth(), self._view())
             self._measure()
+            if self.participants is not None:
+                self.participants.take(
+                    int(done[location_successors.LEAVING]), len(self.automaton.edges) // EDGE
+                )
             if why == location_successors.KNOWN:
                 return
             if why == location_successors.MISS:

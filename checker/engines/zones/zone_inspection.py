@@ -123,7 +123,7 @@ def _look_at_served(times: ZoneTimes, inspection: StaleObservationRaces) -> None
         tally
         for (a, rank), several in sorted(found.items())
         for asked in [learner.question(partial(about_step, inspection, a, rank))]
-        for tally in of_rows(survey, asked, np.concatenate(several))
+        for tally in of_rows(survey, asked, np.sort(np.concatenate(several)))
     ]
     collect(survey, inspection, tallies, lambda: StaleObservationRaces(ALL))
 

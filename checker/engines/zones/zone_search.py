@@ -13,7 +13,9 @@ from checker.engines.zones.kernel import (
     AT,
     COUNT,
     COVERED,
+    DATED,
     DEPTH,
+    FAR,
     FOUND,
     GROUP,
     GROUPS,
@@ -29,20 +31,27 @@ from checker.engines.zones.timed_automaton import EDGES, LOCATION, SIZE, UNKNOWN
 CHUNK = 1 << 14
 """Zones kept between two checks of the time."""
 
+ALONE = np.zeros(1, np.int32)
+"""The participants of each step with one clock."""
+
 
 class Search:
     """The zones reached from a location and clock values, layer by layer.
 
     Attributes:
         automaton: The searched automaton.
+        is_local: Whether each process has a date; else there is one clock.
         state: The state of the loops.
         layers: The first zone of each layer.
     """
 
-    def __init__(self, automaton: TimedAutomaton, location: int, ages: Sequence[int]) -> None:
+    def __init__(
+        self, automaton: TimedAutomaton, location: int, ages: Sequence[int], *, is_local: bool = False
+    ) -> None:
         self.automaton = automaton
-        self.begins, self.sums = Growing(np.int64), Growing(np.int64)
-        self.bounds, self.places, self.following = (Growing(np.int32) for _ in range(3))
+        self.is_local = is_local
+        self.begins, self.sums, self.dated_from = (Growing(np.int64) for _ in range(3))
+        self.bounds, self.places, self.following, self.dated = (Growing(np.int32) for _ in range(4))
         self.heads, self.groups, self.ranks = (Growing(np.int32) for _ in range(3))
         self.rows, self.left = Growing(np.int32), Growing(np.int32)
         self.location, self.ages = location, tuple(ages)
@@ -55,13 +64,11 @@ class Search:
         self.state[FOUND], self.state[LONGEST] = -1, FREE
         self.layers, self._deepest, self._met = [0], 0, 1
         self._see(1)
-        size = len(self.ages) + 1
-        shown = np.array((0, *self.ages), np.int32)
-        first = np.zeros((self._largest, self._largest), np.int32)
-        first[:size, :size] = shown[:, None] - shown[None, :]
-        kernel.enter(
-            self.model, self.zones, self.state, self.location, first, self._scratch.f, self._scratch.bounds
-        )
+        shown = np.array((*[0] * self.processes, *self.ages), np.int32)
+        self._scratch.e[: len(shown), : len(shown)] = shown[:, None] - shown[None, :]
+        kernel.discover(self.model, self.zones, self.state, self.location)
+        model = self.model._replace(takes=np.arange(self.processes, dtype=np.int32))
+        kernel.enter(model, self.zones, self.state, self.location, 0, self.processes, self._scratch)
         self._settle()
 
     # --- searching
@@ -121,7 +128,15 @@ class Search:
         Raises:
             OSError: There is no such folder, or no room in it.
         """
-        for each in (self.begins, self.sums, self.bounds, self.places, self.following):
+        for each in (
+            self.begins,
+            self.sums,
+            self.bounds,
+            self.places,
+            self.following,
+            self.dated,
+            self.dated_from,
+        ):
             each.spill(folder)
         self._see(1)
 
@@ -133,12 +148,14 @@ class Search:
     def _see(self, zones: int) -> None:
         """Update the loops' view of the automaton, with room for so many more zones."""
         automaton = self.automaton
-        self._largest = automaton.largest
-        for each in (self.begins, self.sums, self.places, self.following):
+        self.processes = automaton.processes if self.is_local else 1
+        self._largest = automaton.largest + self.processes - 1
+        for each in (self.begins, self.sums, self.places, self.following, self.dated_from):
             each.size = self.count
             each.reserve(zones + CHUNK)
-        self.bounds.size = int(self.state[USED])
-        self.bounds.reserve((zones + 1) * self._largest**2)
+        for each, used in ((self.bounds, USED), (self.dated, DATED)):
+            each.size = int(self.state[used])
+            each.reserve((zones + 1) * self._largest**2)
         self.groups.size = GROUP * int(self.state[GROUPS])
         self.groups.reserve(GROUP * (zones + CHUNK))
         missing = len(automaton) - len(self.heads)
@@ -157,14 +174,23 @@ class Search:
             automaton.deadlines,
         )
         clocks = (automaton.clocks, automaton.lower, automaton.upper, automaton.rows, self.left)
-        self.model = kernel.CompiledAutomaton._make(each.room for each in (*parts, *clocks))
-        found = (self.bounds, self.begins, self.sums, self.places, self.following, self.heads)
+        takes = (ALONE, ALONE) if self.processes == 1 else (automaton.takes_from.room, automaton.takes.room)
+        rooms = (*(each.room for each in (*parts, *clocks)), *takes)
+        self.model = kernel.CompiledAutomaton._make((*rooms, self.processes))
+        dated = (self.dated, self.dated_from)
+        found = (self.bounds, self.begins, *dated, self.sums, self.places, self.following, self.heads)
         self.zones = kernel.Zones(*(each.room for each in (*found, self.ranks, self.rows, self.groups)))
         shape = (self._largest, self._largest)
         d, e, f = (np.zeros(shape, np.int32) for _ in range(3))
-        self._scratch = kernel.Scratch(d, e, f, np.zeros((4, 1 + self._largest), np.int32))
+        bounds, late = np.zeros((4, 1 + self._largest), np.int32), np.zeros(self.processes, np.int32)
+        self._scratch = kernel.Scratch(d, e, f, bounds, late)
 
     # --- results
+
+    @property
+    def is_far(self) -> bool:
+        """Whether dates were too far apart to be counted."""
+        return bool(self.state[FAR])
 
     @property
     def count(self) -> int:

@@ -9,6 +9,7 @@ import numpy as np
 
 from checker.engines.contract import Exploration
 from checker.engines.graph import Graph, graph_of
+from checker.engines.original_run import lasso_of
 from checker.limits import BoundMet
 from checker.properties import invariant_vacuity
 from checker.properties.findings import MOST_VIOLATIONS, Finding
@@ -27,7 +28,6 @@ from checker.properties.temporal.served_requests import (
 )
 from checker.properties.temporal.truth import FormulaTruth, Valuation, valuation
 from checker.properties.temporal.vacuity import every_formula, is_judged
-from checker.reduction.original_run import lasso_of
 from checker.steps import Step, step_of
 from checker.traces import Trace, replay, to_json
 from checker.verdicts import Outcome, Verdict, Violation

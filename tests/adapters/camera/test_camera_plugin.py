@@ -17,8 +17,8 @@ from adapters.camera.sources import Folder, Stream, source_of
 from adapters.camera.votes import share
 from adapters.plugin import Aged, Gone, Trouble
 from adapters.simulated.camera import render
+from bigactors.arguments.values import camera
 from bigactors.cli import run
-from bigactors.commands.run.option_values import camera
 from physical import circle
 
 pytest.importorskip("cv2")

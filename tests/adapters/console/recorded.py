@@ -8,7 +8,6 @@ from adapters.console.console_view import NOTHING
 from adapters.console.facts import Facts
 from adapters.console.fold import take, time_of
 from adapters.console.history import History
-from adapters.console.mutable_facts import Draft
 from adapters.console.sections import view_of
 from adapters.live.batch import Saying
 from adapters.plugin import LinkLost, LinkRestored, TakenOver
@@ -140,12 +139,12 @@ def messages(path):
 
 def folded(told, until=float("inf"), facts=None):
     """Fold messages, none of which is after a time, at one go: what every other way has to come to."""
-    draft = Draft(facts or Facts())
+    draft = (facts or Facts()).copy()
     for message in told:
         if time_of(draft, message) > until:
             break
         take(draft, message, rules_of_once)
-    return draft.facts()
+    return draft
 
 
 @cache

@@ -14,9 +14,7 @@ from scale import examples
 
 from adapters.camera.votes import share
 from adapters.console.entity_tracks import CHUNK, EVERY, MOST_CHUNKS, extended
-from adapters.console.facts import Facts
-from adapters.console.mutable_facts import Draft
-from adapters.console.ticks import MOST, tick
+from adapters.console.facts import MOST_TICKS, Facts
 from adapters.recording.mcap_files import McapWriter
 from adapters.recording.schemas import SCHEMAS
 from bigactors.commands.console.recorded_history import history_of
@@ -115,11 +113,11 @@ def test_a_trail_that_grows_too_long_keeps_its_ends_and_every_second_position():
 
 
 def test_of_too_many_ticks_the_commonest_sort_is_thinned_out():
-    draft = Draft(Facts())
-    for k in range(3 * MOST):
-        tick(draft, float(k), "finding" if k % 1_000 == 0 else "world")
+    draft = Facts()
+    for k in range(3 * MOST_TICKS):
+        draft.tick(float(k), "finding" if k % 1_000 == 0 else "world")
     sorts = [sort for _, sort in draft.ticks.values()]
-    assert len(sorts) <= MOST
+    assert len(sorts) <= MOST_TICKS
     assert sorts.count("finding") == 6
 
 

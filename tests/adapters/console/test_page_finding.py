@@ -2,13 +2,11 @@
 
 import time
 
-import pytest
 from page_harness import alert, entity, world
 
 TITLE = "text => document.title.includes(text)"
 
 
-@pytest.mark.xfail(strict=False, reason="unsteady: Enter on a found event does not always seek to its moment")
 def test_an_operator_finds_things_and_moments_by_one_input(operates):
     ana = operates()
     finds_a_target_by_the_digits_of_its_mmsi(ana)

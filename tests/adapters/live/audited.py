@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 
 from live_missions import WEST, verify
 
+from adapters.live.run_watchers import Watcher
 from adapters.simulated import Disturbance, Kind, Simulator, Vehicle, run
 from bigactors.arguments import parse_arguments
 from bigactors.commands.run.flight import fly, prepare, record
@@ -87,7 +88,7 @@ LATE = 3.0
 
 
 @dataclass
-class Witness:
+class Witness(Watcher):
     """Holds each commit against where the vehicle was, and each hand-over against whom it obeyed."""
 
     vehicle: Vehicle
@@ -109,12 +110,6 @@ class Witness:
 
     def recent(self):
         return [each for each in self.truth[-100:] if each[0] >= self.truth[-1][0] - LATE]
-
-    def arrived(self, heard, now):
-        pass
-
-    def reported(self, report, now):
-        pass
 
     def turned(self, turn, _now):
         self.findings += turn.findings

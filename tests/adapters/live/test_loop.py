@@ -10,6 +10,7 @@ from adapters.live.batch import Acknowledging, GivingBack, Noting, Ordering, Say
 from adapters.live.core import started
 from adapters.live.loop import LiveRun, NotAsAssumed, NotHeard, PluginFailed
 from adapters.live.operator_socket import NobodyListens, acknowledge, listening, order, say, status
+from adapters.live.run_watchers import Watcher
 from adapters.live.turn_result import Answer
 from adapters.plugin import Accepted, Aged, GoTo, HandOver, LinkLost, Refused
 from physical import PhysicalProperty, centroid, point
@@ -57,15 +58,12 @@ class Vehicle:
         return entity == "uav0"
 
 
-class Looker:
+class Looker(Watcher):
     def __init__(self):
         self.steps, self.findings, self.arrivals = [], [], 0
 
     def arrived(self, _heard, _now):
         self.arrivals += 1
-
-    def reported(self, report, _now):
-        pass
 
     def turned(self, turn, _now):
         self.steps += turn.steps

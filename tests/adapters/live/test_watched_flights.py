@@ -9,6 +9,7 @@ from audited import copter, flown_with
 from live_missions import BESIDE, TOUR, TWO
 from pyproj import Geod
 
+from adapters.live.run_watchers import Watcher
 from adapters.recording.recording_reader import read_recording
 from adapters.simulated import Kind, Vehicle, run
 from bigactors.arguments import parse_arguments
@@ -36,17 +37,11 @@ def prepared(folder, text, *more, seconds=200):
     return prepare(parse_arguments([*line, f"--record={folder / 'r.mcap'}", f"--for={seconds}", *more]))
 
 
-class Findings:
+class Findings(Watcher):
     """A watcher that keeps what is reported."""
 
     def __init__(self):
         self.all = []
-
-    def arrived(self, heard, now):
-        pass
-
-    def reported(self, report, now):
-        pass
 
     def turned(self, turn, _now):
         self.all += turn.findings

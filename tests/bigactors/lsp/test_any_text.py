@@ -11,7 +11,7 @@ from bigactors.lsp.fixes import fixes
 from bigactors.lsp.hover import hover
 from bigactors.lsp.outline import outline
 from bigactors.lsp.renaming import RenameRefused, rename
-from bigactors.lsp.tokens import tokens
+from bigactors.lsp.textmate import tokens
 
 FOLDER = Path(__file__).parents[3] / "specs/missions"
 MISSIONS = sorted(path for path in FOLDER.glob("*.mission") if "watch" not in path.stem)

@@ -282,6 +282,14 @@ def test_the_world_is_drawn_on_the_map_and_its_text_follows_until_it_is_undone(o
     assert text_of(page) == MISSION
 
 
+def test_a_cursor_before_the_language_server_answers_chooses_its_name(opened):
+    page = opened("patrol.mission", MISSION)
+    until(page, "Boolean(studio.editor)")
+    put_cursor(page, "  east")
+    assert page.locator(".cm-name-class").count() == 0
+    says(page, ".chosen-name", "east0 ×")
+
+
 DROP = """([name, text]) => {
   const dataTransfer = new DataTransfer();
   dataTransfer.items.add(new File([text], name));

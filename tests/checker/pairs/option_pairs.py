@@ -11,7 +11,7 @@ from itertools import combinations
 from pathlib import Path
 from unittest.mock import patch
 
-from local_crew import LocalCrew
+from local_crew import explore_in_threads
 
 import checker.limits
 from bigactors.cli import main
@@ -31,7 +31,6 @@ from checker import (
 )
 from checker.engines.capabilities import Feature, Why, pair_of
 from checker.engines.cluster import ray_crew, rounds, shard
-from checker.engines.cluster.explorer import Expedition
 from checker.engines.contract import Cluster
 from checker.engines.fast import row_store
 from checker.engines.fast.rows import Rows
@@ -142,11 +141,6 @@ def spilled_rows():
         yield moves
 
 
-def explore_in_threads(initial, inspect, options):
-    """Explore as the engine Ray does, with workers in this process."""
-    return Expedition(LocalCrew(initial, 2, options.limits.pending), initial, options).run(inspect)
-
-
 def run(mission, asked):
     """Check a mission with some features; memory ends for a search that may spill, one with checkpoints is resumed."""
     with patch.object(zones, "CHUNK", 8):
@@ -208,9 +202,11 @@ def differing(mission, asked, found, right):
 
 
 def folded(other):
-    """Run a pair of the fast engine and another feature with rows folded from the start; return its mark."""
-    if other is Feature.RAY:
-        return "not built yet"
+    """Run a pair of the fast engine and another feature with rows folded from the start; return its mark.
+
+    The engine Ray then runs in this process, with properties of runs.
+    """
+    pair = (other, Feature.RUNS) if other is Feature.RAY else (Feature.FAST, other)
     seen, is_compressed = [], row_store.RowStore._is_compressed
 
     def noted(rows, packing):
@@ -221,8 +217,9 @@ def folded(other):
         patch.object(row_store, "PLAIN", 0),
         patch.object(row_store, "COMPRESSED_FROM", 8),
         patch.object(row_store.RowStore, "_is_compressed", noted),
+        patch.object(ray_crew, "explore_with_ray", explore_in_threads),
     ):
-        mark = marked(Feature.FAST, other)
+        mark = marked(*pair)
     return mark if any(seen) or not mark.startswith("✓") else "✓ rows stay plain"
 
 

@@ -13,9 +13,9 @@ from shipped import UNTIMED
 from swarms import swarms
 
 from checker import Engine, Limits, explore
-from checker.engines.fast.access_recording import ColumnQuestion
 from checker.engines.fast.interchangeable import Likeness
 from checker.engines.fast.rule_cache import Exchange, NoImage
+from checker.recording.access_recording import ColumnQuestion
 from checker.reduction.configuration_renaming import Renaming
 from semantics.behaviours.expressions import Fault
 from semantics.behaviours.observations import Nodes, agent_key

@@ -36,12 +36,12 @@ ENGINES = [Engine.REFERENCE, Engine.FAST]
 # --- beside the full search -----------------------------------------------------------------------------------
 
 
-def compared(initial, asked, reductions, most=MOST):
+def compared(initial, asked, reductions, most=MOST, engine=Engine.REFERENCE):
     """Assert that a reduced search decides properties as the full one does, or refuses them; return how many."""
     full = check(initial, asked, limits=most, engine=Engine.REFERENCE)
     if not full.complete:
         return 0
-    found = check(initial, asked, limits=most, engine=Engine.REFERENCE, reduce=reductions)
+    found = check(initial, asked, limits=most, engine=engine, reduce=reductions)
     assert_replays(found)
     decided = 0
     for one, other in zip(found.verdicts, full.verdicts, strict=True):

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from scale import IS_WHOLE, examples
 
 from semantics.admission.parcel_refusals import text_objection
-from semantics.admission.value_flow import flow_of
+from semantics.analysis.value_flow import flow_of
 from semantics.behaviours.commands import COMMANDS
 from semantics.behaviours.expressions import Fault
 from semantics.behaviours.values import Text

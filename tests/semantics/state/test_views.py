@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from scale import examples
 
-from checker.engines.fast.access_recording import CellRecorder
+from checker.recording.access_recording import CellRecorder
 from semantics import successors
 from semantics.hypothesis_strategies import configurations
 from semantics.state.cell_values import Written

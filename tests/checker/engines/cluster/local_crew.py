@@ -10,6 +10,9 @@ from typing import Any
 
 from checker.engines.cluster.cluster_worker import Worker
 from checker.engines.cluster.crew import LostError
+from checker.engines.cluster.explorer import Expedition
+from checker.engines.contract import Exploration, Inspect, Options
+from checker.reduction.reducer import Reduced
 from semantics.state.configuration import Configuration
 
 
@@ -50,15 +53,23 @@ class LocalCrew:
     """
 
     def __init__(
-        self, initial: Configuration, workers: int, pending: int = 64, dies: tuple[tuple[int, int], ...] = ()
+        self,
+        initial: Configuration,
+        workers: int,
+        pending: int = 64,
+        dies: tuple[tuple[int, int], ...] = (),
+        reduce: Reduced | None = None,
     ) -> None:
-        self.initial, self.pending = initial, pending
-        self.workers = [Worker(initial, pending, me, workers, LocalLinks(self, me)) for me in range(workers)]
+        self.initial, self.pending, self.reduce = initial, pending, reduce
+        self.workers = [self._worker(me, workers) for me in range(workers)]
         self.board = Board(workers)
         self.dies = dies
         self.called: list[list[str]] = [[] for _ in range(workers)]
         self.lost: set[int] = set()
         self.revived = 0
+
+    def _worker(self, me: int, workers: int) -> Worker:
+        return Worker(self.initial, self.pending, me, workers, LocalLinks(self, me), sent(self.reduce))
 
     @property
     def size(self) -> int:
@@ -96,11 +107,16 @@ class LocalCrew:
 
     def revive(self) -> None:
         for worker in self.lost:
-            links = LocalLinks(self, worker)
-            self.workers[worker] = Worker(self.initial, self.pending, worker, self.size, links)
+            self.workers[worker] = self._worker(worker, self.size)
             self.revived += 1
         self.lost = set()
         self.board = Board(self.size)
+
+
+def explore_in_threads(initial: Configuration, inspect: tuple[Inspect, ...], options: Options) -> Exploration:
+    """Explore as the engine Ray does, with workers in this process."""
+    crew = LocalCrew(initial, options.cluster.workers, options.limits.pending, reduce=options.reduce)
+    return Expedition(crew, initial, options).run(inspect)
 
 
 def sent(value: Any) -> Any:

@@ -14,6 +14,7 @@ from checker.engines.cluster import explorer, rounds, shard
 from checker.engines.cluster.checkpoints import KINDS, SCHEMA
 from checker.engines.cluster.explorer import Expedition
 from checker.engines.contract import Options
+from checker.engines.fast import row_store
 from checker.engines.fast.rows import Rows
 from checker.properties.coverage import Visited
 from checker.properties.inspections import Arrival, Computation, DeadlockFreedom, LocalConsistency
@@ -40,9 +41,8 @@ def small_rounds(monkeypatch):
 
 
 def together(initial, workers, inspect=(), limits=LIMITS, **options):
-    return Expedition(LocalCrew(initial, workers, limits.pending), initial, Options(limits, **options)).run(
-        inspect
-    )
+    crew = LocalCrew(initial, workers, limits.pending, reduce=options.get("reduce"))
+    return Expedition(crew, initial, Options(limits, **options)).run(inspect)
 
 
 def inspections():
@@ -102,17 +102,23 @@ def test_workers_visit_of_generated_missions_what_one_process_visits(initial):
         assert collected(other, found) == collected(one, alone)
 
 
+def edges_of(found):
+    """Return the transitions between configurations, each with its label."""
+    graph, c = kept_graph(found), list(found.configurations)
+    assert graph.partial is None
+    return [
+        (c[source], graph.labels[action], c[target])
+        for source, action, target in zip(graph.sources, graph.actions, graph.targets, strict=True)
+    ]
+
+
 @pytest.mark.parametrize("name", ["two_gates", "nomad"])
 def test_the_graph_is_that_of_one_process_but_for_numbers(name):
     initial = start(name)
-    graphs = []
-    for found in (explore(initial, engine=Engine.FAST), together(initial, 3)):
-        graph = kept_graph(found)
-        c = list(found.configurations)
-        labels = [(label.rule, label.agent) for label in graph.labels]
-        edges = zip(graph.sources, graph.actions, graph.targets, strict=True)
-        graphs.append({(c[source], labels[action], c[target]) for source, action, target in edges})
-        assert graph.partial is None
+    graphs = [
+        {(source, label.rule, label.agent, target) for source, label, target in edges_of(found)}
+        for found in (explore(initial, engine=Engine.FAST), together(initial, 3))
+    ]
     assert graphs[0] == graphs[1]
 
 
@@ -194,6 +200,26 @@ def test_what_is_interrupted_while_rows_are_on_their_way_is_not_kept(tmp_path):
     with pytest.raises(KeyboardInterrupt):
         Expedition(Interrupted(initial, 2), initial, options).run(())
     assert not list(tmp_path.rglob("latest.checkpoint"))
+
+
+@pytest.mark.parametrize("name", ["two_gates", "surveillance", "distributed_handover"])
+def test_workers_fold_their_rows(name, tmp_path, monkeypatch):
+    initial = start(name)
+    alone = explore(initial, engine=Engine.FAST)
+    seen = {(c, label.rule, d) for c, label, d in edges_of(alone)}
+    monkeypatch.setattr(row_store, "PLAIN", 0)
+    monkeypatch.setattr(row_store, "COMPRESSED_FROM", 8)
+    monkeypatch.setattr(explorer, "ROUND", 4)
+    undisturbed = LocalCrew(initial, 3)
+    found = Expedition(undisturbed, initial, Options(LIMITS)).run(())
+    assert all(each.shard.store.rows.folded is not None for each in undisturbed.workers)
+    for died in (0, undisturbed.calls // 2):
+        crew = LocalCrew(initial, 3, dies=((died, 1),) if died else ())
+        kept = Keeping(str(tmp_path / str(died)), every=0.0, doubted=30)
+        found = Expedition(crew, initial, Options(LIMITS, keeping=kept)).run(())
+        assert counted(found) == counted(alone)
+        assert {(c, label.rule, d) for c, label, d in edges_of(found)} == seen
+        assert crew.revived == bool(died)
 
 
 # --- who is lost ----------------------------------------------------------------------------------------------

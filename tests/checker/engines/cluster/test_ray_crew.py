@@ -178,7 +178,6 @@ def test_a_damaged_checkpoint_is_a_mistake(tmp_path, capsys):
     [
         (["--workers", "2"], "--workers and --address work with the Ray engine only"),
         (["--engine", "ray", "--workers", "1"], "takes 2 to 256 workers; one is --engine fast"),
-        (["--engine", "ray", "--paranoid", "3"], "--paranoid works with the fast engine"),
     ],
 )
 def test_what_does_not_fit_together_is_a_mistake(options, words, capsys):

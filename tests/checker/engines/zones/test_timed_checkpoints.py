@@ -18,6 +18,7 @@ from checker.engines.fast import row_store
 from checker.engines.timed.original_times import OriginalTimes
 from checker.engines.zones import explorer, timed_automaton_of, timed_checkpoint
 from checker.reduction import Reduced, Reduction
+from semantics.state.setting import Scheduler
 from semantics.timing.intervals import Interval
 from semantics.timing.timing import Motion, Timing
 from specs.elaboration import load_mission
@@ -34,8 +35,16 @@ def small_chunks(monkeypatch):
     monkeypatch.setattr(timed_automaton_of.Network, "margin", 16)
 
 
+LOCAL = [f"{name} under program_order" for name in ("relay_timed", "oil_spill_timed")]
+"""Missions that are searched in local time."""
+
+
 def searched(name, limits=LIMITS, **options):
-    return explore(load_mission(name).initial, engine=Engine.FAST, limits=limits, **options)
+    name, _, scheduler = name.partition(" under ")
+    mission = load_mission(name)
+    if scheduler:
+        mission = mission.under(Scheduler(scheduler), mission.setting.control)
+    return explore(mission.initial, engine=Engine.FAST, limits=limits, **options)
 
 
 def seen(found):
@@ -51,7 +60,7 @@ def cut(name, folder, at):
 
 
 @pytest.mark.parametrize("folded", [False, True], ids=["plain", "folded"])
-@pytest.mark.parametrize("name", TIMED)
+@pytest.mark.parametrize("name", [*TIMED, *LOCAL])
 def test_what_was_cut_goes_on(tmp_path, monkeypatch, name, folded):
     whole = seen(searched(name))
     if folded:
@@ -64,7 +73,7 @@ def test_what_was_cut_goes_on(tmp_path, monkeypatch, name, folded):
     assert seen(searched(name, keeping=Keeping(str(tmp_path), True, "d"))) == whole  # from its end
 
 
-@pytest.mark.parametrize("name", TIMED)
+@pytest.mark.parametrize("name", [*TIMED, *LOCAL])
 def test_what_fills_memory_goes_over_to_files(tmp_path, monkeypatch, name):
     whole, spill, moved = seen(searched(name)), timed_automaton_of.Network.spill, []
 

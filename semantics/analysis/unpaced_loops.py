@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable
 
+from semantics.analysis.termination import counts_up
 from semantics.behaviours.program import Program
 from semantics.behaviours.statements import (
     Block,
@@ -17,7 +18,6 @@ from semantics.behaviours.statements import (
     While,
     branches,
 )
-from semantics.behaviours.termination import counts_up
 
 REQUESTS = (Observe, ControlBy, Migrate, Send)
 """The statements that make a request and continue."""

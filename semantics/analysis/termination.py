@@ -10,9 +10,10 @@ up to a constant.
 from collections.abc import Iterable
 from functools import lru_cache
 
+from semantics.analysis.traversal import reachable
 from semantics.behaviours.expressions import Apply, Expression, Literal, Variable
 from semantics.behaviours.patterns import Anything, Pattern
-from semantics.behaviours.program import Program, reachable
+from semantics.behaviours.program import Program
 from semantics.behaviours.statements import (
     Assign,
     Block,

@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Set
 from dataclasses import dataclass, field
 from typing import Any, Protocol
 
-from checker.engines.fast.value_templates import ObservationHole, has_no_holes, join_value, split_value
+from checker.recording.value_templates import ObservationHole, has_no_holes, join_value, split_value
 from semantics.behaviours.observations import Fact
 from semantics.state.cell_values import Cell, Changes, Edit, Part, Question, Row, WritableCells, merged
 from semantics.state.signature import Name

@@ -1,9 +1,10 @@
 """Bounds: the possible contents, carriers and places of a mission's entities, from its kinds and its first world."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from functools import cache
 
 from semantics.environment import Appears, Drops
+from semantics.fixpoints import closure
 from semantics.state.configuration import Configuration
 from semantics.state.physical_model import Carried, InTransit
 from semantics.state.signature import REGION, Name
@@ -32,11 +33,11 @@ class Overapproximation:
         self.passive = any(setting.signature[kind].passive for kind in setting.kinds.values())
         self.carriers = cache(self._carriers)
         self.holders = cache(self._holders)
-        self.around: Callable[[Name], Names] = cache(lambda name: transitive_closure([name], self.holders))
+        self.around: Callable[[Name], Names] = cache(lambda name: closure([name], self.holders))
         self.aboard: Callable[[Name], Names] = cache(self._aboard)
         self.believable = cache(self._believable)
         self.above: Callable[[Name], Names] = cache(
-            lambda name: transitive_closure(self.believable(name), self.believable)
+            lambda name: closure(self.believable(name), self.believable)
         )
         self.inside: Callable[[Name], Names] = cache(self._inside)
         self.believed_inside: Callable[[Name], Names] = cache(self._believed_inside)
@@ -65,7 +66,7 @@ class Overapproximation:
     def _aboard(self, name: Name) -> Names:
         """Return the possible cargo of an entity, at any depth."""
         return frozenset(
-            other for other in self.names if name in transitive_closure(self.carriers(other), self.carriers)
+            other for other in self.names if name in closure(self.carriers(other), self.carriers)
         )
 
     def _believable(self, name: Name) -> Names:
@@ -82,15 +83,3 @@ class Overapproximation:
     def _believed_inside(self, place: Name) -> Names:
         """Return the possible children of a place in L."""
         return frozenset(name for name in self.names if place in self.believable(name))
-
-
-def transitive_closure(start: Iterable[Name], lead: Callable[[Name], Names]) -> Names:
-    """Return the reflexive transitive closure of some names under a relation."""
-    seen: set[Name] = set()
-    waiting = list(start)
-    while waiting:
-        name = waiting.pop()
-        if name not in seen:
-            seen.add(name)
-            waiting += lead(name)
-    return frozenset(seen)

@@ -1,0 +1,1 @@
+"""Static analysis: the facts about all runs that the text of a mission shows."""

@@ -1,0 +1,92 @@
+"""Local time beside one clock: the same answers from fewer zones, and what fails with fewer participants."""
+
+import numpy as np
+import pytest
+from checked_missions import load
+from shipped import TIMED
+from timed_reports import assert_alike
+
+from checker import Engine, Limits, ZoneClock, check, explore
+from checker.engines.fast.learner import TransitionGroup
+from checker.engines.zones.participants import Participants
+from checker.engines.zones.timed_automaton import EDGE, FOOTPRINT, LEARNED
+from semantics.state.setting import Scheduler
+from specs.elaboration import load_mission
+
+
+def under(name, scheduler=Scheduler.PROGRAM_ORDER):
+    mission = load_mission(name)
+    return mission.under(scheduler, mission.setting.control)
+
+
+def explored(c, clock):
+    found = explore(c, engine=Engine.FAST, clock=clock, limits=Limits(configurations=5_000))
+    assert found.complete
+    return found
+
+
+def assert_same(c):
+    """Look whether local time reaches the same configurations in the same order, by the same steps."""
+    one, other = (explored(c, clock) for clock in (ZoneClock.GLOBAL, ZoneClock.LOCAL))
+    assert not one.times.search.is_local
+    assert list(one.configurations) == list(other.configurations)
+    assert (one.origins, one.depth, one.rules) == (other.origins, other.depth, other.rules)
+    return one, other
+
+
+@pytest.mark.parametrize("name", TIMED)
+def test_a_shipped_mission_gets_the_same_report_in_local_time(name):
+    mission = under(name)
+    reports = [check(mission, engine=Engine.FAST, clock=clock, times=True) for clock in ZoneClock]
+    assert_alike(*reports)
+    assert_same(mission.initial)
+
+
+def test_under_one_queue_the_clock_is_global():
+    found = explored(load_mission("handover_timed").initial, ZoneClock.LOCAL)
+    assert not found.times.search.is_local
+
+
+# --- fewer participants
+
+ORIGINAL = Participants.take
+
+
+def only_who_steps(participants, begun, end):
+    """Let a step have only one participant: its agent or clause."""
+    ORIGINAL(participants, begun, end)
+    learner, edges = participants.learner, participants.automaton.edges.room
+    owners = [*learner.still.read(("agents",)), *learner.setting.environment]
+    for at in range(EDGE * begun, EDGE * end, EDGE):
+        actor = learner.whose[int(edges[at + LEARNED])]
+        assert isinstance(actor, TransitionGroup)
+        bits = 1 << owners.index(actor.about)
+        edges[at + FOOTPRINT] = participants._number(bits.to_bytes(8 * participants.size, "little"))
+    participants._join()
+
+
+def reaches_more(c, monkeypatch, name, change):
+    """Return whether local time with a change reaches more than is reachable in time."""
+    right, _ = assert_same(c)
+    monkeypatch.setattr(Participants, name, change)
+    return set(explored(c, ZoneClock.LOCAL).configurations) > set(right.configurations)
+
+
+def test_a_step_of_which_only_its_actor_is_a_participant_comes_when_no_time_allows_it(monkeypatch):
+    assert reaches_more(under("handover_timed").initial, monkeypatch, "take", only_who_steps)
+
+
+ONE_VEHICLE = """
+BigActor a hosted_at uav1 with_behavior { control(MOVE_HOST_TO south0) control(MOVE_HOST_TO north0) send("off", a) }
+BigActor b hosted_at uav1 with_behavior {
+  react { case "on" => control(MOVE_HOST_TO south0) after 4 s => control(MOVE_HOST_TO south0) }
+  send("off", a)
+}
+scheduler program_order
+control timed
+timing { uav1 flies at 200 m/s to 1000 m/s agents react within 2 s messages over mesh take 0 s }
+"""
+
+
+def test_without_shared_columns_steps_come_in_an_order_that_no_time_allows(monkeypatch):
+    assert reaches_more(load(ONE_VEHICLE).initial, monkeypatch, "shared", lambda *_: np.zeros(0, np.int64))
