@@ -27,6 +27,8 @@ from specs.elaboration import (
 
 def locate(word: str) -> Path:
     """Return the path of a mission, given as a file or as a shipped mission's name; raises Mistake."""
+    if word.endswith(".big"):
+        raise Mistake("this is a system of bigraphs, not a mission", f"bigactors big check {word:.100}", word)
     try:
         return find_mission(word)
     except MissionError as error:

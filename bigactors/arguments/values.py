@@ -49,6 +49,13 @@ def output(word: str) -> tuple[str, str]:
     return name, file
 
 
+def port_number(text: str) -> int:
+    """Return the number of a port; 0 is any free one."""
+    if not re.fullmatch(r"[0-9]{1,5}", text) or int(text) >= 65_536:
+        raise argparse.ArgumentTypeError(f"'{text:.40}' is no port: a whole number to 65535")
+    return int(text)
+
+
 def at_least_zero(text: str) -> int:
     """Return a whole number from 0."""
     if not re.fullmatch(r"[0-9]{1,12}", text):
@@ -378,7 +385,7 @@ VALUES: Final[dict[str, Callable[[str], object]]] = {
     "NAME[:ID]=ADDRESS": vehicle,
     "NAMES": reductions,
     "PITCH[,YAW[,ROLL]]": mount,
-    "PORT": at_least_zero,
+    "PORT": port_number,
     "SECONDS": seconds,
     "SHARE[,SEED]": misses,
     "SIZE": size,

@@ -53,6 +53,10 @@ def run(options: Namespace) -> Exit:
     file = Path(options.file or "mission")
     if file.is_dir():
         raise Mistake("this is a folder, not a mission", "name a file in it", options.file)
+    if not file.parent.is_dir():
+        raise Mistake(
+            "there is no such folder", "make it first, or name a file in another one", str(file.parent)
+        )
     with suppress(KeyboardInterrupt):
         asyncio.run(_serve(file, options))
     return Exit.HOLDS

@@ -1,8 +1,8 @@
 """The instances of a control: the reactions that it requests, for all possible hosts and arguments."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from contextlib import suppress
-from itertools import product
+from itertools import islice, product
 from math import prod
 from typing import Final
 
@@ -18,11 +18,14 @@ MOST_INSTANCES: Final = 5_000
 def instances(program: Program, name: str, given: Iterable[Iterable[Name]]) -> tuple[Reaction, ...] | None:
     """Return the reactions of a command or rule for some hosts and arguments; None if there are too many."""
     ranges = [sorted(each) for each in given]
-    make = program.reactions.get(name)  # a rule with a mistake, which is reported, makes none
-    if make is None or prod(map(len, ranges)) > MOST_INSTANCES:
-        return None
-    found = []
-    for host, *names in product(*ranges):
+    if name not in program.reactions or prod(map(len, ranges)) > MOST_INSTANCES:
+        return None  # a rule with a mistake, which is reported, makes none
+    return tuple(first_instances(program, name, ranges))
+
+
+def first_instances(program: Program, name: str, given: Iterable[Iterable[Name]]) -> Iterator[Reaction]:
+    """Yield the reactions of a command or rule for the first hosts and arguments, at most `MOST_INSTANCES`."""
+    make = program.reactions[name]
+    for host, *names in islice(product(*map(sorted, given)), MOST_INSTANCES):
         with suppress(Fault):  # the command may reject some names
-            found.append(make(host, *names))
-    return tuple(found)
+            yield make(host, *names)

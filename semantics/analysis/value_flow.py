@@ -239,8 +239,11 @@ class ValueFlow:
 
     def reactions(self, agent: Name, control: ControlBy) -> tuple[Reaction, ...] | None:
         """Return the reactions that a control of an agent may request; None if there are too many."""
-        arguments = (self.named_entities(agent, each) for each in control.arguments)
-        return instances(self.program, control.name, (self.hosts(agent), *arguments))
+        return instances(self.program, control.name, self.names_of(agent, control))
+
+    def names_of(self, agent: Name, control: ControlBy) -> tuple[tuple[Name, ...], ...]:
+        """Return the hosts of an agent, and the entities that each argument of its control may name."""
+        return self.hosts(agent), *(self.named_entities(agent, each) for each in control.arguments)
 
     # --- the fixpoint -----------------------------------------------------------------------------------------
 

@@ -88,6 +88,10 @@ world bad.waypoints  # bad.waypoints: line 2: 1 columns where 12 were expected
 world harbour.geojson --within -10,-100,10,100  # --within: from longitude
 world harbour.geojson --within -10,-170,10,170  # --within: from longitude
 world harbour.geojson --within -10,100,10,-60  # --within: from longitude
+studio --port 99999  # --port: '99999' is no port: a whole number to 65535
+studio --port x  # --port: 'x' is no port
+studio none/x.mission  # none: there is no such folder
+check walk.big  # bigactors big check walk.big
 explain LS999  # bigactors: there is no code and no word 'LS999'\n  hint: bigactors explain lists them all
 explain Fairness  #   hint: bigactors explain weak fairness or bigactors explain strong fairness
 explain deadlok  # bigactors: there is no code and no word 'deadlok'\n  hint: did you mean 'deadlock'?

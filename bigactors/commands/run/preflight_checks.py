@@ -20,6 +20,7 @@ from adapters.plugin import Plugin, Preflight, circling, preflights
 from bigactors.commands.run.geofence import placements_of
 from bigactors.mistakes import Mistake
 from bigactors.terminal import tell
+from semantics.analysis.control_instances import first_instances
 from semantics.analysis.overapproximation import Overapproximation
 from semantics.analysis.value_flow import ValueFlow
 from semantics.behaviours.reaction_rules import CONTROL_AUTHORITY, LinkTerm, NodeTerm, PlaceTerm, Reaction
@@ -144,12 +145,9 @@ def _controls(mission: ElaboratedMission) -> Iterator[tuple[Name, int, tuple[Rea
         for number in sorted(flow[agent].statements):
             statement = flow.program.statements[number]
             if isinstance(statement, ControlBy):
-                found = flow.reactions(agent, statement) or ()  # of too many, a part shows nothing
-                yield (
-                    agent,
-                    flow.program.line(number),
-                    tuple(each for each in found if _may_take(mission, each)),
-                )
+                found = first_instances(flow.program, statement.name, flow.names_of(agent, statement))
+                possible = tuple(each for each in found if _may_take(mission, each))
+                yield agent, flow.program.line(number), possible
 
 
 def _may_take(mission: ElaboratedMission, reaction: Reaction) -> bool:
