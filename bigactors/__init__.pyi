@@ -1,6 +1,7 @@
 from bigactors.mission_check import check as check
 from bigactors.pictures import draw_configuration as draw_configuration
 from bigactors.pictures import draw_trace as draw_trace
+from checker import Engine as Engine
 from checker import Exploration as Exploration
 from checker import Limits as Limits
 from checker import MissionModel as MissionModel
