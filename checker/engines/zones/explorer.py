@@ -11,7 +11,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from checker.engines.contract import Exploration, Inspect, Options, Progress, TickError, ZoneClock, sample
+from checker.engines.contract import (
+    Exploration,
+    Inspect,
+    Keeping,
+    Options,
+    Progress,
+    TickError,
+    ZoneClock,
+    sample,
+)
 from checker.engines.fast.compile_progress import compilation_uncounted
 from checker.engines.fast.expander import Expander
 from checker.engines.made_on_access import MadeOnAccess
@@ -20,13 +29,13 @@ from checker.engines.timed.original_times import OriginalTimes
 from checker.engines.timed.zone_answers import ZoneTimes
 from checker.engines.zones.timed_automaton import ConstantTooLargeError
 from checker.engines.zones.timed_automaton_of import Network
-from checker.engines.zones.timed_checkpoint import resume, save
+from checker.engines.zones.timed_checkpoint import digest_in, resume, save
 from checker.engines.zones.zone_inspection import inspect_zones
 from checker.engines.zones.zone_search import CHUNK, Search
 from checker.limits import Bound, BoundMet, Limits, Stop, bounded, is_full
 from semantics.behaviours.statements import Spawn
 from semantics.state.configuration import Configuration
-from semantics.state.setting import Scheduler
+from semantics.state.setting import Scheduler, Setting
 
 if TYPE_CHECKING:
     from checker.reduction.reducer import Reduced
@@ -45,14 +54,8 @@ class _Files:
 
     def __init__(self, network: Network, options: Options) -> None:
         self.network, self.keeping, self.folder = network, options.keeping, options.limits.spill
-        folder = self.keeping.folder
-        name = "monitored" if network.learner.setting.monitored else "exploration"
-        self.path = None if folder is None else Path(folder) / f"{name}.timed.checkpoint"
-        self.digest = self.keeping.digest
-        if options.reduce is not None:  # it reaches other rows
-            self.digest += f", {options.reduce.identity}"
-        if network.participants is not None:  # it may reach more rows before it knows all participants
-            self.digest += ", local time"
+        self.path = _path(network.learner.setting, self.keeping)
+        self.digest = _digest(options, is_local=network.participants is not None)
         self.seconds, self.kept = 0.0, time.monotonic()
 
     def begin(self) -> None:
@@ -81,6 +84,22 @@ class _Files:
         self.network.spill(folder)
         search.spill(folder)
         return not is_full(limits)
+
+
+def _path(setting: Setting, keeping: Keeping) -> Path | None:
+    """Return the path of the checkpoint."""
+    name = "monitored" if setting.monitored else "exploration"
+    return None if keeping.folder is None else Path(keeping.folder) / f"{name}.timed.checkpoint"
+
+
+def _digest(options: Options, *, is_local: bool) -> str:
+    """Return the digest of the searches that may go on from a checkpoint."""
+    digest = options.keeping.digest
+    if options.reduce is not None:  # it reaches other rows
+        digest += f", {options.reduce.identity}"
+    if is_local:  # it may reach more rows before it knows all participants
+        digest += ", local time"
+    return digest
 
 
 class _Learning(Search):
@@ -129,8 +148,10 @@ def explore_in_zones(initial: Configuration, inspect: Iterable[Inspect], options
     times = ZoneTimes(network, search)
     if search.is_local and (search.is_far or network.crowded(times.reached)):
         spent = options.limits.spent + time.monotonic() - started
+        anew = replace(options.keeping, resumed=False)  # the checkpoint is of local time
         limits = replace(options.limits, spent=spent)
-        return explore_in_zones(initial, inspect, replace(options, clock=ZoneClock.GLOBAL, limits=limits))
+        once_more = replace(options, clock=ZoneClock.GLOBAL, limits=limits, keeping=anew)
+        return explore_in_zones(initial, inspect, once_more)
     if network.crowded(times.reached):
         found.bounds.append(options.limits.bound(Stop.PENDING))
     _summarise(times, found)
@@ -151,7 +172,16 @@ def _is_local(initial: Configuration, options: Options) -> bool:
         and setting.scheduler is not Scheduler.FCFS
         and _exchange(options) is None
         and not any(isinstance(each, Spawn) for each in setting.program.statements)
+        and not _goes_on_with_one_clock(setting, options)
     )
+
+
+def _goes_on_with_one_clock(setting: Setting, options: Options) -> bool:
+    """Whether the search goes on from a checkpoint of one that had one clock, or had gone over to it."""
+    path = _path(setting, options.keeping)
+    if path is None or not options.keeping.resumed or not path.exists():
+        return False
+    return digest_in(path) == _digest(options, is_local=False)
 
 
 def _exchange(options: Options) -> ClockExchange | None:

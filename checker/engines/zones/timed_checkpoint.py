@@ -34,6 +34,11 @@ def save(network: Network, seconds: float, digest: str, path: Path) -> None:
     write_archive(path, head, KINDS, (*kept_rows(network.model), network.automaton.left()))
 
 
+def digest_in(path: Path) -> object:
+    """Return the digest in a checkpoint; raises CheckpointError if it is damaged."""
+    return read_archive(path, SCHEMA, KINDS)[0].get("digest")
+
+
 def resume(network: Network, digest: str, path: Path) -> float:
     """Continue in a new network from a checkpoint; return the seconds that its search had taken.
 

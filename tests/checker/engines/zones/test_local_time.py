@@ -1,12 +1,17 @@
 """Local time beside one clock: the same answers from fewer zones, and what fails with fewer participants."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from checked_missions import load
+from hypothesis import HealthCheck, assume, given
+from scale import examples
 from shipped import TIMED
+from timed_missions import timed_missions
 from timed_reports import assert_alike
 
-from checker import Engine, Limits, ZoneClock, check, explore
+from checker import Engine, Keeping, Limits, ZoneClock, check, explore
 from checker.engines.fast.learner import TransitionGroup
 from checker.engines.zones.participants import Participants
 from checker.engines.zones.timed_automaton import EDGE, FOOTPRINT, LEARNED
@@ -45,6 +50,37 @@ def test_a_shipped_mission_gets_the_same_report_in_local_time(name):
 def test_under_one_queue_the_clock_is_global():
     found = explored(load_mission("handover_timed").initial, ZoneClock.LOCAL)
     assert not found.times.search.is_local
+
+
+@examples(90, deadline=None, suppress_health_check=list(HealthCheck))
+@given(timed_missions())
+def test_a_generated_mission_has_the_same_configurations_in_local_time(c):
+    limits = Limits(configurations=400)
+    assume(explore(c, engine=Engine.FAST, clock=ZoneClock.GLOBAL, limits=limits).complete)
+    assert_same(c)
+
+
+CROWDED = """
+BigActor a hosted_at uav0 with_behavior { control(MOVE_HOST_TO south0) send("x", b) send("x", b) }
+BigActor b hosted_at uav1 with_behavior { control(MOVE_HOST_TO south0) control(MOVE_HOST_TO north0) }
+scheduler program_order
+control timed
+timing { UAV flies at 20 m/s agents react within 5 s messages over mesh take 0 s }
+"""
+
+
+@pytest.mark.parametrize("most", [None, 1])
+def test_a_search_that_goes_over_to_one_clock_goes_on_from_its_checkpoint(most, tmp_path):
+    """An agent has more messages pending than may be: after the checkpoint if that is of a search cut short."""
+    c, kept = load(CROWDED).initial, Keeping(str(tmp_path))
+    first = explore(c, engine=Engine.FAST, limits=Limits(configurations=most, pending=1), keeping=kept)
+    assert first.times.search.is_local == (most is not None)
+    for _ in range(2):
+        again = explore(c, engine=Engine.FAST, limits=Limits(pending=1), keeping=replace(kept, resumed=True))
+        assert not again.times.search.is_local
+        right = explore(c, engine=Engine.FAST, limits=Limits(pending=1), clock=ZoneClock.GLOBAL)
+        assert list(again.configurations) == list(right.configurations)
+        assert again.bounds == right.bounds
 
 
 # --- fewer participants
