@@ -31,6 +31,7 @@ OPTIONS = {
     "resumed": (NO, YES),
     "spill": (NO, YES),
     "rows": ("plain", "compressed"),
+    "clock": ("local", "global"),
 }
 """How it may be checked."""
 

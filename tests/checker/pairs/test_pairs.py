@@ -15,7 +15,7 @@ from option_pairs import spilled_rows
 from replaying import assert_replays
 from scale import IS_WHOLE
 
-from checker import CombinationError, Engine, Keeping, Limits, Reduction, check
+from checker import CombinationError, Engine, Keeping, Limits, Reduction, ZoneClock, check
 from checker.check import reductions_of
 from checker.engines.fast import explorer, row_store
 from checker.engines.zones import explorer as timed_explorer
@@ -26,8 +26,13 @@ MOST = Limits(configurations=20_000)
 REDUCTIONS = {NO: (), "por": (Reduction.POR,), "symmetry": (Reduction.SYMMETRY,), "both": tuple(Reduction)}
 OF_RUNS = {"ltl": NO, "ctl": NO, "progress": NO}
 FACTORS = {**LANGUAGE, **OPTIONS}
-UNTIMED = covering_array({key: each for key, each in FACTORS.items() if key != "timing"}, seed=0)
+UNTIMED = covering_array({key: each for key, each in FACTORS.items() if key != "timing"}, seed=2)
+HAVE_ZONES = {"timing": YES, "control": "timed", "engine": "fast", "spawn": NO, "reduction": NO} | OF_RUNS
+CHOICES = {**FACTORS, "scheduler": ("program_order", "unordered")}
+IN_ZONES = covering_array({key: each for key, each in CHOICES.items() if key not in HAVE_ZONES}, seed=5)
+"""Of missions whose zones have local time unless one clock is chosen: every two of their choices meet there, too."""
 ARRAY = [{**row, "timing": timing} for timing in (NO, YES) for row in UNTIMED]
+ARRAY += [{**row, **HAVE_ZONES} for row in IN_ZONES]
 SEEDS = range(3)
 CASES = [(number, seed) for seed in SEEDS for number in range(len(ARRAY))]
 FAST = [row for row in ARRAY if (row["engine"], row["timing"]) == ("fast", NO)]
@@ -86,7 +91,7 @@ def checked(mission, row, reductions, folder):
             with pytest.raises(CombinationError, match="works with the fast"):
                 check(mission, **{"limits": MOST, **options, **more})
         return check(mission, limits=MOST, **options)
-    options["threads"] = int(row["threads"])
+    options |= {"threads": int(row["threads"]), "clock": ZoneClock(row["clock"])}
     limits = MOST
     if row["spill"] == YES:
         (folder / "spill").mkdir()
