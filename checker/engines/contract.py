@@ -42,6 +42,12 @@ class TickError(EngineError):
     """Times of more ticks than an engine counts."""
 
 
+class WindowsError(TickError):
+    """More timed appearances and disappearances than an engine counts."""
+
+    remedy = "add --engine reference, or give fewer of them times"
+
+
 class CheckpointError(Exception):
     """A checkpoint that can't be read, or that belongs to another exploration."""
 

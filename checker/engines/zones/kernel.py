@@ -325,7 +325,7 @@ def enter(
     clocks = m.locations[at + SIZE]
     size = clocks + m.processes - 1
     begin, last = m.locations[at + DEADLINES], m.locations[at + DEADLINES_END]
-    deadlines, lower, upper = s.bounds[:2], s.bounds[2], s.bounds[3]
+    lower, upper = s.bounds[0], s.bounds[1]
     for i in range(1, clocks):
         clock = m.clocks[m.locations[at + CLOCKS] + i - 1]
         lower[i], upper[i] = m.lower[clock], m.upper[clock]
@@ -334,10 +334,6 @@ def enter(
         s.late[m.takes[k]] = 0
     count = np.int64(0)
     for k in range(begin, last):
-        deadlines[0, k - begin], deadlines[1, k - begin] = (
-            m.deadlines[DEADLINE * k],
-            m.deadlines[DEADLINE * k + 1],
-        )
         clock, process, most = deadline_of(m, k)
         if s.late[process] == 0 and s.e[clock, process] > most:
             count += 1
@@ -365,7 +361,8 @@ def enter(
             within = within and d[clock, process] <= most
         extrapolate(ages, clocks, lower, upper)
         if within:
-            end(ages, clocks, deadlines[0, : last - begin], deadlines[1, : last - begin])
+            deadlines = m.deadlines[DEADLINE * begin : DEADLINE * last]
+            end(ages, clocks, deadlines[::DEADLINE], deadlines[1::DEADLINE])
         keep(m, z, state, location, ages, clocks, d)
 
 

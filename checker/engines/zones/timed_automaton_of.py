@@ -16,6 +16,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from checker.engines.contract import WindowsError
 from checker.engines.fast.arrays import Growing
 from checker.engines.fast.decision_leaves import LEAF
 from checker.engines.fast.learned_model import LIMIT, NODE
@@ -75,6 +76,9 @@ from semantics.timing.timing import Window
 NOWHERE = (0, NONE)
 """The deadline of a location in which no time passes."""
 
+MOST_WINDOWS = 39
+"""The most windows, whose states are the digits of a number of 64 bits in base 3."""
+
 MARGIN = 1 << 12
 """The number of further locations, and edges, for which room is reserved."""
 
@@ -100,6 +104,9 @@ class Network:
         exchange: The exchanges under which representatives replace rows; None for none.
         keys: The clock of each number, with its aim.
         participants: Those of each edge in local time; None with one clock.
+
+    Raises:
+        WindowsError: There are too many windows.
     """
 
     def __init__(
@@ -123,6 +130,11 @@ class Network:
         self.windows = [
             number for number, each in enumerate(self.timing.clauses) if isinstance(each.step, Window)
         ]
+        if len(self.windows) > MOST_WINDOWS:
+            raise WindowsError(
+                f"{len(self.windows)} appearances and disappearances with times are more than the engine 'fast' "
+                f"counts ({MOST_WINDOWS})"
+            )
         self.records: dict[ActorClocks, list[int]] = {}
         self.answers, self.running, self.times = (Growing(np.int32) for _ in range(3))
         self.done, self.tested, self.served = (Growing(np.int32) for _ in range(3))

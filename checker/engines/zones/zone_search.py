@@ -182,7 +182,7 @@ class Search:
         self.zones = kernel.Zones(*(each.room for each in (*found, self.ranks, self.rows, self.groups)))
         shape = (self._largest, self._largest)
         d, e, f = (np.zeros(shape, np.int32) for _ in range(3))
-        bounds, late = np.zeros((4, 1 + self._largest), np.int32), np.zeros(self.processes, np.int32)
+        bounds, late = np.zeros((2, self._largest), np.int32), np.zeros(self.processes, np.int32)
         self._scratch = kernel.Scratch(d, e, f, bounds, late)
 
     # --- results
