@@ -17,7 +17,6 @@ from checker.engines.contract import (
     Keeping,
     Options,
     Progress,
-    TickError,
     ZoneClock,
     sample,
 )
@@ -27,7 +26,6 @@ from checker.engines.made_on_access import MadeOnAccess
 from checker.engines.timed.exchanged_clocks import ClockExchange
 from checker.engines.timed.original_times import OriginalTimes
 from checker.engines.timed.zone_answers import ZoneTimes
-from checker.engines.zones.timed_automaton import ConstantTooLargeError
 from checker.engines.zones.timed_automaton_of import Network
 from checker.engines.zones.timed_checkpoint import digest_in, resume, save
 from checker.engines.zones.zone_inspection import inspect_zones
@@ -123,28 +121,25 @@ def explore_in_zones(initial: Configuration, inspect: Iterable[Inspect], options
     """
     inspect, started = tuple(inspect), time.monotonic()
     found, uncounted = Exploration([], []), options.limits.uncounted
-    try:
-        with compilation_uncounted(options) as counted:
-            uncounted = counted.limits.uncounted
-            network = Network(
-                initial, options.limits.pending, _exchange(options), local=_is_local(initial, options)
-            )
-            files = _Files(network, counted)
-            files.begin()
-            started -= files.seconds
-            search = _Learning(network)
-            within = counted.limits if counted.limits.spill is None else replace(counted.limits, memory=None)
-            try:
-                with bounded(within, started):
-                    _visit_all(network, search, files, found, counted, started)
-                    _doubt(network, options.keeping.doubted, options.reduce)
-            except BoundMet as met:
-                found.bounds.append(met.bound)
-            except OSError as error:  # files or memory have no room for growth
-                found.bounds.append(Bound(Stop.NO_ROOM, (options.limits.spill or "memory", error.strerror)))
-            found.bounds += files.keep(time.monotonic() - started, always=True)
-    except ConstantTooLargeError as error:
-        raise TickError(str(error)) from error
+    with compilation_uncounted(options) as counted:
+        uncounted = counted.limits.uncounted
+        network = Network(
+            initial, options.limits.pending, _exchange(options), local=_is_local(initial, options)
+        )
+        files = _Files(network, counted)
+        files.begin()
+        started -= files.seconds
+        search = _Learning(network)
+        within = counted.limits if counted.limits.spill is None else replace(counted.limits, memory=None)
+        try:
+            with bounded(within, started):
+                _visit_all(network, search, files, found, counted, started)
+                _doubt(network, options.keeping.doubted, options.reduce)
+        except BoundMet as met:
+            found.bounds.append(met.bound)
+        except OSError as error:  # files or memory have no room for growth
+            found.bounds.append(Bound(Stop.NO_ROOM, (options.limits.spill or "memory", error.strerror)))
+        found.bounds += files.keep(time.monotonic() - started, always=True)
     times = ZoneTimes(network, search)
     if search.is_local and (search.is_far or network.crowded(times.reached)):
         spent = options.limits.spent + time.monotonic() - started

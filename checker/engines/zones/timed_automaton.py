@@ -13,6 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from checker.engines.contract import TickError
 from checker.engines.fast.arrays import Growing
 from checker.engines.zones.difference_bounds import MOST, NONE
 
@@ -59,10 +60,6 @@ class Location(NamedTuple):
     clocks: tuple[int, ...] = ()
     deadlines: tuple[tuple[int, int], ...] = ()
     goal: Constraint | None = None
-
-
-class ConstantTooLargeError(Exception):
-    """A constant that exceeds the largest one for clocks."""
 
 
 LOCATION, EDGE, TEST, DEADLINE = 8, 8, 3, 3
@@ -234,6 +231,4 @@ class TimedAutomaton:
 
 def _look(*constants: int) -> None:
     if max(constants) > MOST:
-        raise ConstantTooLargeError(
-            f"{max(constants):,} ticks are more than the engine 'fast' counts ({MOST:,})"
-        )
+        raise TickError(f"{max(constants):,} ticks are more than the engine 'fast' counts ({MOST:,})")

@@ -329,6 +329,20 @@ def test_more_ticks_than_zones_count_are_refused():
         )
 
 
+DAY = """
+BigActor a hosted_at gcs0 with_behavior { react { after 24 h => skip } }
+BigActor b hosted_at gcs1 with_behavior { observe(HOST) }
+control timed
+timing { tick 1 ms agents react within 1 ms sense within 24 h }
+"""
+
+
+def test_a_date_of_more_ticks_than_zones_count_is_refused():
+    """No clock of the mission shows so many ticks, but that of the question does."""
+    with pytest.raises(EngineError, match="ticks are more than the engine 'fast' counts"):
+        check(load(DAY).initial, (when(Ended("a")),), engine=Engine.FAST)
+
+
 def test_how_long_vehicles_are_aloft_is_timed_only_where_endurance_is_asked(flight):
     endurance = Property(PropertyKind.ENDURANCE, "endurance")
     assert watching(flight, (when(), endurance)) is flight
