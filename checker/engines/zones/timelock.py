@@ -8,6 +8,7 @@ where steps may form a cycle through locations with deadlines.
 from __future__ import annotations
 
 import networkx as nx
+import numpy as np
 
 from checker.engines.timed.answers import TimelockRun
 from checker.engines.timed.first_runs import TimedRun
@@ -38,10 +39,11 @@ def first_stop(network: Network) -> TimelockRun | None:
     if not risky:
         return None
     passing = _passing(network.automaton, risky)
-    observer = Observer(network, lambda _, __: ObserverClock.OFF, Meter(), is_exact=True)
+    never = np.full((2, len(network.automaton)), ObserverClock.OFF, np.int8)
+    observer = Observer(network, never, Meter(), is_exact=True)
     exact = Search(observer.automaton, 0, observer.first_ages())
     exact.finish(look)
-    stopped = [_without(place, network, passing) for place, _ in observer.spots]
+    stopped = [_without(place, network, passing) for place in observer.locations.tolist()]
     run = first_run(exact, stopped.__getitem__)
     return None if run is None else _going_round(network, observer, run)
 
@@ -123,7 +125,7 @@ def _going_round(network: Network, observer: Observer, dates: Dates) -> Timelock
 
     def shown(moment: TimedState) -> tuple[int, tuple[int, ...]]:
         """Return a state in the form of `Timeline`."""
-        location = observer.spots[moment.location].location
+        location = observer.spot(moment.location).location
         place = network.place(location)
         windows, ages = iter(place.windows), iter(network.capped(location, moment.ages))
         clocks = network.situation(place.number).clocks
