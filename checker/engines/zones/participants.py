@@ -209,10 +209,11 @@ class WatchedParticipants(Participants):
         self, numbers: NDArray[np.int32], sources: NDArray[np.int32], targets: NDArray[np.int32]
     ) -> NDArray[np.int32]:
         """Return the numbers of footprints with the observer, for edges between the mission's locations."""
-        kinds = np.stack([numbers, self.kind_of[sources], self.kind_of[targets]])
-        met, which = np.unique(kinds, axis=1, return_inverse=True)
-        known = np.array([self._footprint(*each) for each in met.T.tolist()], np.int32)
-        found: NDArray[np.int32] = known[which.ravel()]
+        most = len(self.kinds)
+        several = (numbers * np.int64(most) + self.kind_of[sources]) * most + self.kind_of[targets]
+        met, which = np.unique(several, return_inverse=True)
+        known = [self._footprint(each // most**2, each // most % most, each % most) for each in met.tolist()]
+        found: NDArray[np.int32] = np.array(known, np.int32)[which]
         return found
 
     def _footprint(self, number: int, source: int, target: int) -> int:

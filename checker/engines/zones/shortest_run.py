@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from checker.engines.zones import kernel
 from checker.engines.zones.difference_bounds import FREE
 from checker.engines.zones.kernel import AT, DEPTH, GROUP, GROUPS, LAYER, LONGEST, MISSED
-from checker.engines.zones.timed_automaton import TimedAutomaton
+from checker.engines.zones.timed_automaton import EDGE, FIRST, TimedAutomaton
 from checker.engines.zones.zone_search import CHUNK, Search
 
 LeadsOn = Callable[["ShortestRun", int], bool]
@@ -136,7 +136,8 @@ class RestOfRun(Search):
 
 def steps_left(automaton: TimedAutomaton, ends: Sequence[int]) -> NDArray[np.int32]:
     """Return for each location the least number of edges to an end, `FREE` if no end is reachable."""
-    sources, targets = automaton.arrows()
+    taken = automaton.edges.used[FIRST::EDGE] >= 0
+    sources, targets = (each[taken] for each in automaton.arrows())
     left = np.full(len(automaton), FREE, np.int32)
     left[ends] = 0
     while True:
