@@ -25,7 +25,7 @@ from checker.engines.timed.first_runs import TimedRun
 from checker.engines.zones.difference_bounds import MOST, NONE
 from checker.engines.zones.earliest_dates import Dates, Zone, tested, whole
 from checker.engines.zones.first_run import run_of
-from checker.engines.zones.observers import Meter, Observer, ObserverClock, Rule
+from checker.engines.zones.observers import CUT_OFF, Meter, Observer, ObserverClock, Rule
 from checker.engines.zones.questions import NO_TURN, first_turn, is_aloft, longest_flight, unbounded
 from checker.engines.zones.timed_automaton import (
     EDGE,
@@ -315,38 +315,34 @@ class ZoneTimes:
             return [zone for edge in edges for zone in [tested(whole(size), edge.tests)] if zone is not None]
 
         if steps:
-            return run_of(self.search, goal, min(steps.values()), there).run().then(min(steps))
+            return run_of(self.search, goal, min(steps.values())).run().then(min(steps))
         zones = (int(self._by_place[each][0]) for each in there if each in self._by_place)
-        return run_of(self.search, goal, self.search.depth(min(zones)), there).run()
+        return run_of(self.search, goal, self.search.depth(min(zones))).run()
 
     # --- durations
 
-    def true_in(self, formula: Proposition) -> list[bool]:
+    def true_in(self, formula: Proposition) -> NDArray[np.bool_]:
         """Return for each location whether a proposition is true there."""
         found = np.zeros(self.network.size, np.bool_)
         found[self.order] = self.where(formula)
-        true: list[bool] = found[self.network.of_locations.used].tolist()
+        true: NDArray[np.bool_] = found[self.network.of_locations.used]
         return true
 
     def waiting(self, asked: Proposition | None, awaited: Proposition) -> Rule:
         """Return the observer's rule for a wait from the start, or from wherever another proposition is true."""
-        inside = [not true for true in self.true_in(awaited)]
-        begins = None if asked is None else self.true_in(asked)
-
-        def rule(before: ObserverClock, location: int) -> ObserverClock | None:
-            if not inside[location]:
-                return ObserverClock.OFF if begins is not None or location == self.network.first else None
-            if before is ObserverClock.ON:
-                return ObserverClock.ON
-            starts = location == self.network.first if begins is None else begins[location]
-            return ObserverClock.START if starts else ObserverClock.OFF
-
+        over, first = self.true_in(awaited), self.network.first
+        begins = np.arange(len(over)) == first if asked is None else self.true_in(asked)
+        rule = np.full((2, len(over)), ObserverClock.ON, np.int8)
+        rule[ObserverClock.OFF] = np.where(begins, ObserverClock.START, ObserverClock.OFF)
+        rule[:, over] = ObserverClock.OFF
+        if asked is None:
+            rule[:, over & ~begins] = CUT_OFF
         return rule
 
     def within(self, asked: Proposition | None, awaited: Proposition, most: int) -> WaitAnswer:
         """Return the longest wait for a proposition from the start, or from wherever another one is true."""
         rule = self.waiting(asked, awaited)
-        if asked is None and rule(ObserverClock.OFF, self.network.first) is ObserverClock.OFF:
+        if asked is None and rule[ObserverClock.OFF, self.network.first] == ObserverClock.OFF:
             return WaitAnswer(0)
         meter = Meter(most + 1, goal=(ObserverClock.ON, most + 1))
         asks = (awaited,) if asked is None else (asked, awaited)
@@ -362,12 +358,9 @@ class ZoneTimes:
         true = self.true_in(formula)
         if true[self.network.first]:
             return FirstMoments(TimedRun(), 0, may_wait=False)
-
-        def rule(before: ObserverClock, location: int) -> ObserverClock:
-            if true[location]:
-                return ObserverClock.END
-            return ObserverClock.ON if before is ObserverClock.ON else ObserverClock.START
-
+        rule = np.full((2, len(true)), ObserverClock.ON, np.int8)
+        rule[ObserverClock.OFF] = ObserverClock.START
+        rule[:, true] = ObserverClock.END
         first = self._first(rule, (formula,))
         latest = NEVER if first is None else self._longest(rule, ObserverClock.END, (formula,))
         return FirstMoments(first, latest, math.isinf(self._longest(rule, ObserverClock.ON, (formula,))))
@@ -455,7 +448,7 @@ class ZoneTimes:
         history = dates.history()
         seen: dict[tuple[int, tuple[int, ...]], int] = {}
         for at, (now, (place, ages)) in enumerate(history[:-1]):
-            location, watch = observer.spots[place]
+            location, watch = observer.spot(place)
             clock = observer.clock(place)
             if not clock or ages[clock - 1] == 0:
                 seen.clear()
@@ -521,7 +514,7 @@ class ZoneTimes:
             wanted = tested(whole(size), tests) if tests else None
             return [] if wanted is None else [wanted]
 
-        return run_of(self.search, goal, self.search.depth(zone), self.reached.tolist()).run()
+        return run_of(self.search, goal, self.search.depth(zone)).run()
 
     def stop(self) -> TimelockRun | None:
         """Return the first run to a timelock, None if there is none."""
@@ -535,7 +528,7 @@ def _shown(
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Return the least and the greatest value of the observer's clock, the last, in the zones of one of its states."""
     places = search.places.room[: search.count]
-    zones = np.flatnonzero(np.array([spot.watch is where for spot in observer.spots])[places])
+    zones = np.flatnonzero(observer.watches[places] == where)
     sizes = search.automaton.locations.used[SIZE::LOCATION][places[zones]].astype(np.int64)
     begins, bounds = search.begins.room[zones], search.bounds.room
     least, most = -bounds[begins + sizes - 1], bounds[begins + sizes * (sizes - 1)]

@@ -93,7 +93,7 @@ def model_of(times: ZoneTimes, asked: Property | None, name: str) -> ExportedAut
     observer = Observer(network, rule, Meter(asked.bound + 1, goal=(ObserverClock.ON, asked.bound + 1)))
     goals = ((at, observer.automaton.location(at).goal) for at in range(len(observer.automaton)))
     late = {at: [goal] for at, goal in goals if goal is not None}
-    walk = _Walk(network, observer.automaton, [each.location for each in observer.spots], late)
+    walk = _Walk(network, observer.automaton, observer.locations.tolist(), late)
     return _model(name, asked, walk, 0, observer.first_ages())
 
 

@@ -62,12 +62,11 @@ class Spans:
 
     def _watched(self, meter: Meter) -> tuple[Observer, Search, Asked]:
         """Search with a clock that runs from the start."""
-
-        def rule(before: ObserverClock, _: int) -> ObserverClock:
-            return ObserverClock.START if before is ObserverClock.OFF else ObserverClock.ON
-
-        observer, search = self.times.explored(Observer(self.times.network, rule, meter))
-        rows = [self.times.network.place(spot.location).number for spot in observer.spots]
+        network = self.times.network
+        rule = np.full((2, len(network.automaton)), ObserverClock.ON, np.int8)
+        rule[ObserverClock.OFF] = ObserverClock.START
+        observer, search = self.times.explored(Observer(network, rule, meter))
+        rows = network.of_locations.used[observer.locations].tolist()
         asked = [
             [
                 (edge, number)

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
+from functools import partial
 
 import numpy as np
 
 from checker.engines.zones.difference_bounds import close
 from checker.engines.zones.earliest_dates import Dates, TimedState, Zone
-from checker.engines.zones.zone_search import Search, ShortestRun
+from checker.engines.zones.shortest_run import RestOfRun, ShortestRun
+from checker.engines.zones.zone_search import Search
 from checker.limits import look
 
 Wanted = Callable[[int], list[Zone]]
@@ -21,17 +23,26 @@ def first_run(search: Search, wanted: Wanted) -> Dates | None:
     return None if zone is None else run_of(search, wanted, search.depth(zone))
 
 
-def run_of(search: Search, wanted: Wanted, length: int, ends: Iterable[int] | None = None) -> Dates:
+def run_of(search: Search, wanted: Wanted, length: int) -> Dates:
     """Return the first run of a number of steps to a goal that fewer steps don't reach."""
     automaton = search.automaton
-    among = range(len(automaton)) if ends is None else ends
-    route = ShortestRun(automaton, search.location, search.ages, length, [at for at in among if wanted(at)])
+    ends = sorted({search.place(zone) for zone in search.layer(length) if meets(search, zone, wanted)})
+    route = ShortestRun(automaton, search.location, search.ages, length, ends)
     group = next(
         group
-        for group in route.groups_at_end(look)
+        for group in route.groups_at_end(
+            look, partial(leads_on, wanted) if search.is_local else None, search.count
+        )
         if any(meets(route, zone, wanted) for zone in route.zones_of(group))
     )
     return Dates(automaton, TimedState(search.location, search.ages), route.steps_to(group), wanted)
+
+
+def leads_on(wanted: Wanted, route: ShortestRun, group: int) -> bool:
+    """Return whether a group leads to the goal in the steps that are left; in doubt it does."""
+    rest = RestOfRun(route, group)
+    rest.finish(look)
+    return rest.is_far or any(meets(rest, zone, wanted) for zone in rest.last())
 
 
 def meets(search: Search, zone: int, wanted: Wanted) -> bool:

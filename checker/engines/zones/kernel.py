@@ -5,8 +5,9 @@ layer, the zones of one row are expanded together, step by step, and rows in the
 another one of its location is dropped. A zone that includes others replaces them in later inclusion tests; those of its
 own layer are dropped.
 
-The search for the first run to a goal (`checker.engines.timed.first_runs`) proceeds by groups instead. A group is the
-set of zones that one sequence of steps reaches, in the order of sequences within a layer; it drops no kept zone.
+The search for the first run to a goal (`checker.engines.timed.first_runs`) proceeds by groups instead, depth first. A
+group is the set of zones that one sequence of steps reaches. A zone is dropped if another one that as many steps or
+fewer reached includes it; it drops no kept zone.
 
 There is one clock for all processes, or a date for each. A *dated* zone bounds the differences between these dates and
 the starts of clocks. Its index i below the number of processes stands for a process, the following ones for clocks. A
@@ -84,6 +85,7 @@ class Zones(NamedTuple):
         dated, dated_from: With several processes, the dated matrices of the last two layers, and their starts.
         sums: The sum of its bounds; an including zone has at least the same sum.
         places: Its location.
+        depths: In a search for a run, the number of steps that reached it; else 0.
         following: The next zone of its location in the list for inclusion tests; `COVERED` for a zone included in
             another one of its layer.
         heads: For each location the first zone of that list.
@@ -99,6 +101,7 @@ class Zones(NamedTuple):
     dated_from: State
     sums: State
     places: Ints
+    depths: Ints
     following: Ints
     heads: Ints
     ranks: Ints
@@ -114,10 +117,11 @@ BEFORE, BY, BEGIN = range(GROUP)
 AT, LAYER, DEPTH, COUNT, USED, FOUND, MISSED, GROUPS, RANKED, LONGEST, DATED, FAR, STATE = range(13)
 """Indices of a state.
 
-`AT` is the next zone, or group, to expand. `LAYER` is the first zone of the layer under construction, `DEPTH` its
-depth. `COUNT`, `USED`, `GROUPS` and `RANKED` count zones, bounds, groups and discovered rows. `FOUND` is the depth of
-the goal, -1 before. `MISSED` is the number of zones without room, and `LONGEST` the most steps. `DATED` counts the
-bounds of dated matrices; `FAR` is 1 once dates are too far apart to be counted.
+`AT` is the next zone, or group, to expand; -1 after the last group. `LAYER` is the first zone of the layer under
+construction. `DEPTH` is the number of steps to it, or to the successors of the group. `COUNT`, `USED`, `GROUPS` and
+`RANKED` count zones, bounds, groups and discovered rows. `FOUND` is the depth of the goal, -1 before. `MISSED` is the
+number of zones without room, and `LONGEST` the most steps. `DATED` counts the bounds of dated matrices; `FAR` is 1 once
+dates are too far apart to be counted.
 """
 
 FARTHEST = MISSING >> 1
@@ -214,14 +218,18 @@ def keep(
 ) -> None:
     """Keep a zone with these ages and its dated matrix, unless the ages of another one include its own."""
     at = LOCATION * location
-    total = np.int64(0)
+    total, depth = np.int64(0), np.int64(0)
+    if state[GROUPS] > 0:
+        depth = state[DEPTH]
     for i in range(size):
         for j in range(size):
             total += d[i, j]
     before, zone = np.int64(-1), np.int64(z.heads[location])
     while zone >= 0:
         following = np.int64(z.following[zone])
-        begin, held, holds = z.begins[zone], z.sums[zone] >= total, z.sums[zone] <= total
+        begin = z.begins[zone]
+        held = z.sums[zone] >= total and z.depths[zone] <= depth
+        holds = z.sums[zone] <= total and z.depths[zone] >= depth
         for i in range(size):
             if not held and not holds:
                 break
@@ -245,7 +253,7 @@ def keep(
     for i in range(size):
         for j in range(size):
             z.bounds[begin + i * size + j] = d[i, j]
-    z.begins[new], z.sums[new], z.places[new] = begin, total, location
+    z.begins[new], z.sums[new], z.places[new], z.depths[new] = begin, total, location, depth
     z.following[new] = z.heads[location]
     z.heads[location] = new
     state[COUNT] += 1
@@ -531,13 +539,13 @@ def arrange_dated(m: CompiledAutomaton, z: Zones, state: State, kept: State, ren
 
 @njit(cache=True)
 def advance_by_groups(
-    m: CompiledAutomaton, z: Zones, state: State, largest: int, last_group: int, s: Scratch
+    m: CompiledAutomaton, z: Zones, state: State, largest: int, until: int, s: Scratch
 ) -> int:
-    """Expand groups in order, up to a number of groups; return why that ended."""
-    while state[AT] < last_group:
-        group = state[AT]
+    """Expand groups depth first, up to one after all steps, or to a number of zones; return why that ended."""
+    while state[AT] >= 0 and state[DEPTH] <= state[LONGEST] and state[COUNT] < until:
+        group, fresh = state[AT], state[GROUPS]
         begin = z.groups[GROUP * group + BEGIN]
-        last = z.groups[GROUP * (group + 1) + BEGIN] if group + 1 < state[GROUPS] else state[COUNT]
+        last = z.groups[GROUP * (group + 1) + BEGIN] if group + 1 < fresh else state[COUNT]
         ways = ways_of(m, z, begin, last)
         if is_full(m, z, state, ways, largest):
             return FULL
@@ -550,5 +558,23 @@ def advance_by_groups(
                 z.groups[at + BEFORE], z.groups[at + BY], z.groups[at + BEGIN] = group, step, first
                 state[GROUPS] += 1
             step = next_step(m, z, begin, last, step)
-        state[AT] += 1
+        if state[GROUPS] > fresh:
+            state[AT] = fresh
+            state[DEPTH] += 1
+        else:
+            turn_back(z, state)
     return DONE
+
+
+@njit(cache=True)
+def turn_back(z: Zones, state: State) -> None:
+    """Go on after a group without further successors: with the next one by the same group, or by an earlier one."""
+    group = state[AT]
+    while group >= 0:
+        before = np.int64(z.groups[GROUP * group + BEFORE])
+        group += 1
+        if group < state[GROUPS] and z.groups[GROUP * group + BEFORE] == before:
+            break
+        group = before
+        state[DEPTH] -= 1
+    state[AT] = group

@@ -1,29 +1,65 @@
 """A mission's automaton with one additional clock, which measures how long a proposition is awaited."""
 
+# mypy: disable-error-code="return-value, assignment, arg-type"
+# (numba infers the types of compiled functions; mypy takes its integers for Python's)
+
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, field
-from enum import Enum, auto
-from typing import NamedTuple
+from enum import IntEnum
+from typing import Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from checker.engines.fast.arrays import Growing
+from checker.engines.fast.jit_decorators import njit
 from checker.engines.zones.difference_bounds import NONE
 from checker.engines.zones.participants import WatchedParticipants
-from checker.engines.zones.timed_automaton import Constraint, Edge, Location, TimedAutomaton
+from checker.engines.zones.timed_automaton import (
+    CLOCKS,
+    DEADLINE,
+    DEADLINES,
+    DEADLINES_END,
+    EDGE,
+    EDGES,
+    EDGES_END,
+    FIRST,
+    FOOTPRINT,
+    GOAL,
+    LEARNED,
+    LEAST,
+    LOCATION,
+    SIZE,
+    SOURCES,
+    TARGET,
+    TEST,
+    TESTS,
+    TESTS_END,
+    TimedAutomaton,
+)
 from checker.engines.zones.timed_automaton_of import NOWHERE, Network
 
+Ints = NDArray[np.int32]
 
-class ObserverClock(Enum):
+
+class ObserverClock(IntEnum):
     """The state of the additional clock in a location."""
 
-    OFF = auto()
-    ON = auto()
-    START = auto()
-    END = auto()
+    OFF = 0
+    ON = 1
+    END = 2
     """The clock is read, and the location has no edges."""
+    START = 3
+
+
+_END, _START = int(ObserverClock.END), int(ObserverClock.START)
+
+CUT_OFF: Final = -1
+"""The state that a rule gives to a location that is left out."""
+
+Rule = NDArray[np.int8]
+"""The state of the clock in each location: where it was off before, and where it was on."""
 
 
 class ObservedLocation(NamedTuple):
@@ -31,10 +67,6 @@ class ObservedLocation(NamedTuple):
 
     location: int
     watch: ObserverClock
-
-
-Rule = Callable[[ObserverClock, int], ObserverClock | None]
-"""The state of the clock in a location, given its state before; None to cut off the location."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,6 +96,7 @@ class Observer:
         is_exact: Whether each clock's larger constant serves for both kinds of bounds; extrapolation then adds only
             bisimilar values.
         reads: In local time the columns that decide the rule in each of the mission's locations; None for one clock.
+        locations, watches: The mission's location of each of its own, and the state of the clock there.
         participants: Those of its edges; None for one clock.
     """
 
@@ -73,69 +106,159 @@ class Observer:
     is_exact: bool = False
     reads: NDArray[np.uint64] | None = None
     automaton: TimedAutomaton = field(default_factory=TimedAutomaton)
-    spots: list[ObservedLocation] = field(default_factory=list)
-    numbers: dict[ObservedLocation, int] = field(default_factory=dict)
+    locations: Ints = field(init=False)
+    watches: Ints = field(init=False)
     meter_clock: int = field(init=False)
     participants: WatchedParticipants | None = field(init=False, default=None)
 
     def __post_init__(self) -> None:
-        lower, upper = (
-            each.used.tolist() for each in (self.network.automaton.lower, self.network.automaton.upper)
-        )
-        for least, most in zip(lower, upper, strict=True):
+        base = self.network.automaton
+        for least, most in zip(base.lower.used.tolist(), base.upper.used.tolist(), strict=True):
             self.automaton.clock(*(max(least, most),) * 2 if self.is_exact else (least, most))
         self.meter_clock = self.automaton.clock(self.meter.lower, self.meter.upper)
         if self.reads is not None and self.network.participants is not None:
             self.participants = WatchedParticipants(self.network.participants, self.automaton, self.reads)
-        watch = self.rule(ObserverClock.OFF, self.network.first)
-        assert watch is not None
-        self._add(self.network.first, watch)
-        for number, spot in enumerate(self.spots):  # grows during the loop
-            self.automaton.leave(number, [] if spot.watch is ObserverClock.END else self._edges(spot))
+        spots, edges = _followed(base.locations.used, base.edges.used, self.rule, self.network.first)
+        self.locations, self.watches = spots.T
+        self._add_locations(np.bincount(edges[:, 1], minlength=len(spots)))
+        self._add_edges(*edges.T)
         if self.participants is not None:
             self.participants.join()
 
+    def spot(self, number: int) -> ObservedLocation:
+        """Return the mission's location of a location, and the state of the clock there."""
+        return ObservedLocation(int(self.locations[number]), ObserverClock(int(self.watches[number])))
+
     def clock(self, number: int) -> int:
         """Return the index of the additional clock in a location, 0 where it doesn't run."""
-        off = self.spots[number].watch is ObserverClock.OFF
-        return 0 if off else len(self.automaton.location(number).clocks)
+        off = self.watches[number] == ObserverClock.OFF
+        return 0 if off else int(self.automaton.locations.used[LOCATION * number + SIZE]) - 1
 
     def first_ages(self) -> tuple[int, ...]:
         """Return the initial clock values."""
         ages = self.network.first_ages
-        return ages if self.spots[0].watch is ObserverClock.OFF else (*ages, 0)
+        return ages if self.watches[0] == ObserverClock.OFF else (*ages, 0)
 
-    def _add(self, location: int, watch: ObserverClock) -> int:
-        spot = ObservedLocation(location, ObserverClock.ON if watch is ObserverClock.START else watch)
-        if spot in self.numbers:
-            return self.numbers[spot]
-        clocks, _, goal = self.network.automaton.location(location)
-        deadlines = self.network.automaton.deadlines_of(location)
+    def _add_locations(self, ways: NDArray[np.int64]) -> None:
+        """Add the locations, with so many edges each."""
+        base, found = self.network.automaton, self.automaton
+        records = base.locations.used.reshape(-1, LOCATION)[self.locations]
+        runs, ends = self.watches != ObserverClock.OFF, self.watches == ObserverClock.END
+        own = records[:, SIZE].copy()
+        more = np.full((len(records), 1), self.meter_clock, np.int32)
+        begins = records[:, CLOCKS].copy()
+        records[:, CLOCKS], _ = _extend(
+            found.clocks, base.clocks.used[:, None], (begins, begins + own - 1), runs, more
+        )
+        late = runs & (self.meter.most >= 0) | ends
         process = 0 if self.participants is None else self.participants.process
-        if spot.watch is not ObserverClock.OFF:
-            clocks = (*clocks, self.meter_clock)
-            if self.meter.goal is not None and self.meter.goal[0] is spot.watch:
-                goal = Constraint(len(clocks), self.meter.goal[1])
-            if spot.watch is ObserverClock.END:
-                deadlines = [[*NOWHERE, process]]
-            elif self.meter.most >= 0:
-                deadlines.append([len(clocks), self.meter.most, process])
-        self.spots.append(spot)
-        number = self.numbers[spot] = self.automaton.add(Location(clocks, (), goal), deadlines)
-        return number
+        more = np.stack([own, np.full_like(own, self.meter.most), np.full_like(own, process)], axis=1)
+        more[ends] = *NOWHERE, process
+        begins, last = (
+            records[:, DEADLINES].copy(),
+            np.where(ends, records[:, DEADLINES], records[:, DEADLINES_END]),
+        )
+        records[:, DEADLINES], records[:, DEADLINES_END] = _extend(
+            found.deadlines, base.deadlines.used.reshape(-1, DEADLINE), (begins, last), late, more
+        )
+        records[:, SIZE] += runs
+        records[:, EDGES_END] = np.cumsum(ways)
+        records[:, EDGES] = records[:, EDGES_END] - ways
+        if self.meter.goal is not None:
+            sought = runs & (self.watches == self.meter.goal[0])
+            records[sought, GOAL], records[sought, LEAST] = own[sought], self.meter.goal[1]
+        _put(found.locations, records)
+        _put(found.rows, np.arange(len(records)))
+        found.largest = int(records[:, SIZE].max())
 
-    def _edges(self, spot: ObservedLocation) -> list[Edge]:
-        found = []
-        clock = len(self.network.automaton.location(spot.location).clocks) + 1
-        runs = spot.watch is ObserverClock.ON
-        for step, tests, target, sources, footprint in self.network.automaton.out(spot.location):
-            watch = self.rule(spot.watch, target)
-            if watch is None:
+    def _add_edges(self, edges: Ints, sources: Ints, targets: Ints, starts: Ints) -> None:
+        """Add the edges: those of the mission, from one location to another; `starts` is 1 where the clock starts."""
+        base, found = self.network.automaton, self.automaton
+        records = base.edges.used.reshape(-1, EDGE)[edges]
+        size = base.locations.used[SIZE::LOCATION]
+        own, kept = size[self.locations[sources]], size[self.locations[targets]] - 1
+        ran, runs = (self.watches[each] != ObserverClock.OFF for each in (sources, targets))
+        more = np.stack([own, np.zeros_like(own), np.full_like(own, self.meter.most)], axis=1)
+        records[:, TESTS], records[:, TESTS_END] = _extend(
+            found.tests,
+            base.tests.used.reshape(-1, TEST),
+            (records[:, TESTS].copy(), records[:, TESTS_END].copy()),
+            ran & (self.meter.most >= 0),
+            more,
+        )
+        begins = records[:, SOURCES].copy()
+        goes_on = np.where(ran & (starts == 0), own, 0)[:, None]
+        records[:, SOURCES], _ = _extend(
+            found.sources, base.sources.used[:, None], (begins, begins + kept), runs, goes_on
+        )
+        if self.participants is not None:
+            records[:, FOOTPRINT] = self.participants.footprints(
+                records[:, FOOTPRINT], self.locations[sources], self.locations[targets]
+            )
+        records[:, TARGET] = targets
+        records[:, LEARNED] = records[:, FIRST] = NONE
+        _put(found.edges, records)
+
+
+@njit(cache=True, _nrt=True)
+def _followed(locations: Ints, edges: Ints, rule: Rule, first: int) -> tuple[Ints, Ints]:
+    """Return the observer's locations and edges, breadth-first.
+
+    Of each location: that of the mission, and the state of the clock. Of each edge: that of the mission, its source,
+    its target, and whether the clock starts.
+    """
+    numbers = np.full((3, len(locations) // LOCATION), -1, np.int32)
+    spots = np.empty((numbers.size, 2), np.int32)
+    found = np.empty((2 * (len(edges) // EDGE), 4), np.int32)
+    count, ways, at = 1, 0, 0
+    watch = rule[0, first]
+    spots[0, 0], spots[0, 1] = first, 1 if watch == _START else watch
+    numbers[spots[0, 1], first] = 0
+    while at < count:
+        location, before = spots[at, 0], spots[at, 1]
+        begin, end = locations[LOCATION * location + EDGES], locations[LOCATION * location + EDGES_END]
+        if before == _END:
+            end = begin
+        for edge in range(begin, end):
+            target = edges[EDGE * edge + TARGET]
+            watch = rule[before, target]
+            if watch < 0:
                 continue
-            if watch is not ObserverClock.OFF:
-                sources = (*sources, clock if runs and watch is not ObserverClock.START else 0)  # noqa: PLW2901
-            late = (Constraint(clock, 0, self.meter.most),) if runs and self.meter.most >= 0 else ()
-            if self.participants is not None:
-                footprint = self.participants.footprint(footprint, spot.location, target)  # noqa: PLW2901
-            found.append(Edge(step, (*tests, *late), self._add(target, watch), sources, footprint))
-        return found
+            after = 1 if watch == _START else watch
+            if numbers[after, target] < 0:
+                numbers[after, target] = count
+                spots[count, 0], spots[count, 1] = target, after
+                count += 1
+            found[ways, 0], found[ways, 1], found[ways, 2] = edge, at, numbers[after, target]
+            found[ways, 3] = watch == _START
+            ways += 1
+        at += 1
+    return spots[:count].copy(), found[:ways].copy()
+
+
+def _extend(
+    to: Growing, records: Ints, ranges: tuple[Ints, Ints], chosen: NDArray[np.bool_], more: Ints
+) -> tuple[Ints, Ints]:
+    """Add ranges of records, the chosen ones with one more record at the end; return the ranges where they are."""
+    begins, ends = (each.astype(np.int64) for each in ranges)
+    sizes = ends - begins
+    lasts = np.cumsum(sizes + chosen)
+    firsts = lasts - sizes - chosen
+    found = np.empty((int(lasts[-1]) if len(lasts) else 0, records.shape[1]), np.int32)
+    found[_counted(firsts, sizes)] = records[_counted(begins, sizes)]
+    found[lasts[chosen] - 1] = more[chosen]
+    _put(to, found)
+    return firsts.astype(np.int32), lasts.astype(np.int32)
+
+
+def _counted(begins: NDArray[np.int64], sizes: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Return the numbers in ranges that begin there and are so long."""
+    ends = np.cumsum(sizes)
+    found: NDArray[np.int64] = np.arange(int(sizes.sum())) + np.repeat(begins - ends + sizes, sizes)
+    return found
+
+
+def _put(to: Growing, numbers: NDArray[np.int32] | NDArray[np.int64]) -> None:
+    """Add numbers to an array."""
+    first = to.extend(numbers.size)
+    to.room[first : to.size] = numbers.ravel()

@@ -198,28 +198,35 @@ class WatchedParticipants(Participants):
         self.automaton = automaton
         kinds, which = np.unique(reads, axis=0, return_inverse=True)
         self.kinds = [int.from_bytes(each.tobytes(), "little") for each in kinds]
-        self.kind_of = which.ravel().tolist()
+        self.kind_of = which.ravel()
         self.touched = np.concatenate((base.touched, np.bitwise_or.reduce(kinds, axis=0)))
         self.wrote = np.concatenate((base.wrote, np.zeros(self.words, np.uint64)))
-        self.known: dict[tuple[int, int, int], int] = {}
         self._count()
         assert self.division is not None
         self.process = int(self.division[0][-1])
 
-    def footprint(self, number: int, source: int, target: int) -> int:
-        """Return the number of a footprint with the observer, for an edge between two of the mission's locations."""
-        key = number, self.kind_of[source], self.kind_of[target]
-        if key not in self.known:
-            before, after = (self.kinds[each] for each in key[1:])
-            begin = WORD * (self.base.size - self.words)
-            whole = int.from_bytes(self.base.found[number], "little")
-            members, columns = whole & ((1 << begin) - 1), whole >> begin
-            if columns & before:
-                members |= 1 << self.base.total
-                columns |= before ^ after
-            begin = WORD * (self.size - self.words)
-            self.known[key] = self._number((members | columns << begin).to_bytes(8 * self.size, "little"))
-        return self.known[key]
+    def footprints(
+        self, numbers: NDArray[np.int32], sources: NDArray[np.int32], targets: NDArray[np.int32]
+    ) -> NDArray[np.int32]:
+        """Return the numbers of footprints with the observer, for edges between the mission's locations."""
+        most = len(self.kinds)
+        several = (numbers * np.int64(most) + self.kind_of[sources]) * most + self.kind_of[targets]
+        met, which = np.unique(several, return_inverse=True)
+        known = [self._footprint(each // most**2, each // most % most, each % most) for each in met.tolist()]
+        found: NDArray[np.int32] = np.array(known, np.int32)[which]
+        return found
+
+    def _footprint(self, number: int, source: int, target: int) -> int:
+        """Return the number of a footprint with the observer, which reads these kinds of columns."""
+        before, after = self.kinds[source], self.kinds[target]
+        begin = WORD * (self.base.size - self.words)
+        whole = int.from_bytes(self.base.found[number], "little")
+        members, columns = whole & ((1 << begin) - 1), whole >> begin
+        if columns & before:
+            members |= 1 << self.base.total
+            columns |= before ^ after
+        begin = WORD * (self.size - self.words)
+        return self._number((members | columns << begin).to_bytes(8 * self.size, "little"))
 
     def join(self) -> None:
         """Note the participants of all edges."""

@@ -188,14 +188,12 @@ class TimedAutomaton:
         return self.edges.room[EDGE * max(begin, 0) : EDGE * max(end, 0)].reshape(-1, EDGE)
 
     def arrows(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-        """Return the sources and the targets of the edges that were taken."""
+        """Return the sources and the targets of the edges."""
         locations, edges = self.locations.used.reshape(-1, LOCATION), self.edges.used.reshape(-1, EDGE)
         begins = locations[:, EDGES]
         counts = np.where(begins < 0, 0, locations[:, EDGES_END] - begins)
         order = np.argsort(np.where(counts > 0, begins, len(edges)), kind="stable")
-        sources = np.repeat(order, counts[order])
-        taken = edges[:, FIRST] >= 0
-        return sources[taken], edges[taken, TARGET].astype(np.int64)
+        return np.repeat(order, counts[order]), edges[:, TARGET].astype(np.int64)
 
     def left(self) -> NDArray[np.int64]:
         """Return the locations whose edges are known, in the order in which they were worked out."""

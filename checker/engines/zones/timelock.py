@@ -7,8 +7,9 @@ where steps may form a cycle through locations with deadlines.
 
 from __future__ import annotations
 
-import networkx as nx
+import numpy as np
 
+from checker.engines.strong_components import strong_components
 from checker.engines.timed.answers import TimelockRun
 from checker.engines.timed.first_runs import TimedRun
 from checker.engines.zones.earliest_dates import (
@@ -25,7 +26,13 @@ from checker.engines.zones.earliest_dates import (
 )
 from checker.engines.zones.first_run import first_run
 from checker.engines.zones.observers import Meter, Observer, ObserverClock
-from checker.engines.zones.timed_automaton import Constraint, TimedAutomaton
+from checker.engines.zones.timed_automaton import (
+    DEADLINES,
+    DEADLINES_END,
+    LOCATION,
+    Constraint,
+    TimedAutomaton,
+)
 from checker.engines.zones.timed_automaton_of import Network
 from checker.engines.zones.zone_search import Search
 from checker.limits import look
@@ -38,27 +45,29 @@ def first_stop(network: Network) -> TimelockRun | None:
     if not risky:
         return None
     passing = _passing(network.automaton, risky)
-    observer = Observer(network, lambda _, __: ObserverClock.OFF, Meter(), is_exact=True)
+    never = np.full((2, len(network.automaton)), ObserverClock.OFF, np.int8)
+    observer = Observer(network, never, Meter(), is_exact=True)
     exact = Search(observer.automaton, 0, observer.first_ages())
     exact.finish(look)
-    stopped = [_without(place, network, passing) for place, _ in observer.spots]
+    stopped = [_without(place, network, passing) for place in observer.locations.tolist()]
     run = first_run(exact, stopped.__getitem__)
     return None if run is None else _going_round(network, observer, run)
 
 
 def _risky(automaton: TimedAutomaton) -> set[int]:
     """Return the locations that reach, through locations with deadlines, a cycle of such locations."""
-    graph = nx.DiGraph()
-    ending = {place for place in range(len(automaton)) if automaton.location(place).deadlines}
-    for place in ending:
-        graph.add_edges_from((place, edge.target) for edge in automaton.out(place) if edge.target in ending)
-    rounds = {
-        place
-        for component in nx.strongly_connected_components(graph)
-        for place in component
-        if len(component) > 1 or graph.has_edge(place, place)
-    }
-    return rounds.union(*(nx.ancestors(graph, place) for place in rounds))
+    sources, targets = automaton.arrows()
+    ending = automaton.locations.used[DEADLINES::LOCATION] < automaton.locations.used[DEADLINES_END::LOCATION]
+    among = ending[sources] & ending[targets]
+    order = np.argsort(sources[among], kind="stable")
+    sources, targets = sources[among][order], targets[among][order]
+    starts = np.searchsorted(sources, np.arange(len(automaton) + 1))
+    _, component = strong_components(starts, targets)
+    risky = np.bincount(component)[component] > 1
+    risky[sources[sources == targets]] = True
+    while np.any(more := risky[targets] & ~risky[sources]):
+        risky[sources[more]] = True
+    return set(np.flatnonzero(risky).tolist())
 
 
 def _passing(automaton: TimedAutomaton, risky: set[int]) -> dict[int, list[Zone]]:
@@ -123,7 +132,7 @@ def _going_round(network: Network, observer: Observer, dates: Dates) -> Timelock
 
     def shown(moment: TimedState) -> tuple[int, tuple[int, ...]]:
         """Return a state in the form of `Timeline`."""
-        location = observer.spots[moment.location].location
+        location = observer.spot(moment.location).location
         place = network.place(location)
         windows, ages = iter(place.windows), iter(network.capped(location, moment.ages))
         clocks = network.situation(place.number).clocks

@@ -52,6 +52,7 @@ class Search:
         self.is_local = is_local
         self.begins, self.sums, self.dated_from = (Growing(np.int64) for _ in range(3))
         self.bounds, self.places, self.following, self.dated = (Growing(np.int32) for _ in range(4))
+        self.depths = Growing(np.int32)
         self.heads, self.groups, self.ranks = (Growing(np.int32) for _ in range(3))
         self.rows, self.left = Growing(np.int32), Growing(np.int32)
         self.location, self.ages = location, tuple(ages)
@@ -64,12 +65,21 @@ class Search:
         self.state[FOUND], self.state[LONGEST] = -1, FREE
         self.layers, self._deepest, self._met = [0], 0, 1
         self._see(1)
-        shown = np.array((*[0] * self.processes, *self.ages), np.int32)
-        self._scratch.e[: len(shown), : len(shown)] = shown[:, None] - shown[None, :]
-        kernel.discover(self.model, self.zones, self.state, self.location)
-        model = self.model._replace(takes=np.arange(self.processes, dtype=np.int32))
-        kernel.enter(model, self.zones, self.state, self.location, 0, self.processes, self._scratch)
+        self._enter_first()
         self._settle()
+
+    def _enter_first(self) -> None:
+        """Keep the zones with which the search begins."""
+        kernel.discover(self.model, self.zones, self.state, self.location)
+        ages = np.array((0, *self.ages), np.int32)
+        self._enter(self.location, ages[:, None] - ages[None, :])
+
+    def _enter(self, location: int, ages: NDArray[np.int32]) -> None:
+        """Keep a zone with which the search begins: all processes have one date."""
+        which = np.array([*[0] * self.processes, *range(1, len(ages))])
+        self._scratch.e[: len(which), : len(which)] = ages[which[:, None], which]
+        model = self.model._replace(takes=np.arange(self.processes, dtype=np.int32))
+        kernel.enter(model, self.zones, self.state, location, 0, self.processes, self._scratch)
 
     # --- searching
 
@@ -133,6 +143,7 @@ class Search:
             self.sums,
             self.bounds,
             self.places,
+            self.depths,
             self.following,
             self.dated,
             self.dated_from,
@@ -150,7 +161,7 @@ class Search:
         automaton = self.automaton
         self.processes = automaton.processes if self.is_local else 1
         self._largest = automaton.largest + self.processes - 1
-        for each in (self.begins, self.sums, self.places, self.following, self.dated_from):
+        for each in (self.begins, self.sums, self.places, self.depths, self.following, self.dated_from):
             each.size = self.count
             each.reserve(zones + CHUNK)
         for each, used in ((self.bounds, USED), (self.dated, DATED)):
@@ -178,8 +189,10 @@ class Search:
         rooms = (*(each.room for each in (*parts, *clocks)), *takes)
         self.model = kernel.CompiledAutomaton._make((*rooms, self.processes))
         dated = (self.dated, self.dated_from)
-        found = (self.bounds, self.begins, *dated, self.sums, self.places, self.following, self.heads)
-        self.zones = kernel.Zones(*(each.room for each in (*found, self.ranks, self.rows, self.groups)))
+        kept = (self.bounds, self.begins, *dated, self.sums, self.places, self.depths, self.following)
+        self.zones = kernel.Zones(
+            *(each.room for each in (*kept, self.heads, self.ranks, self.rows, self.groups))
+        )
         shape = (self._largest, self._largest)
         d, e, f = (np.zeros(shape, np.int32) for _ in range(3))
         bounds, late = np.zeros((2, self._largest), np.int32), np.zeros(self.processes, np.int32)
@@ -226,6 +239,11 @@ class Search:
         """Return the depth of a zone."""
         return int(np.searchsorted(self.layers, zone, side="right")) - 1
 
+    def layer(self, depth: int) -> range:
+        """Return the zones of a depth."""
+        ends = [*self.layers[depth + 1 :], self.count]
+        return range(self.layers[depth], ends[0])
+
     def place(self, zone: int) -> int:
         """Return the location of a zone."""
         return int(self.places.room[zone])
@@ -245,68 +263,3 @@ class Search:
 
     def __iter__(self) -> Iterator[tuple[int, NDArray[np.int32]]]:
         return ((self.place(zone), self.matrix(zone)) for zone in range(self.count))
-
-
-class ShortestRun(Search):
-    """The first sequence of a number of steps to a goal that fewer steps don't reach.
-
-    The search proceeds by groups (see `kernel`) and prunes locations from which the remaining steps don't suffice.
-    """
-
-    def __init__(
-        self, automaton: TimedAutomaton, location: int, ages: Sequence[int], length: int, ends: Sequence[int]
-    ) -> None:
-        self.length = length
-        self.ends = list(ends)
-        super().__init__(automaton, location, ages)
-
-    def _begin(self) -> None:
-        self.left.size = 0
-        self.left.extend(len(self.automaton))
-        self.left.used[:] = steps_left(self.automaton, self.ends)
-        super()._begin()
-        self.state[LAYER], self.state[LONGEST] = FREE, self.length
-        self.state[AT], self.state[GROUPS] = 0, 1
-        self.groups.room[:GROUP] = -1, -1, 0
-
-    def groups_at_end(self, look: Callable[[], None]) -> Iterator[int]:
-        """Yield the groups after all steps, in order."""
-        for depth in range(1, self.length + 1):
-            last = int(self.state[GROUPS])
-            self.state[DEPTH] = depth
-            while self.state[AT] < last:
-                look()
-                until = min(last, int(self.state[AT]) + CHUNK)
-                why = kernel.advance_by_groups(
-                    self.model, self.zones, self.state, self._largest, until, self._scratch
-                )
-                if why == kernel.FULL:
-                    self._see(int(self.state[MISSED]))
-        yield from range(int(self.state[AT]), int(self.state[GROUPS]))
-
-    def steps_to(self, group: int) -> tuple[int, ...]:
-        """Return the steps that lead to a group."""
-        steps = []
-        while group > 0:
-            steps.append(int(self.groups.room[GROUP * group + kernel.BY]))
-            group = int(self.groups.room[GROUP * group + kernel.BEFORE])
-        return tuple(reversed(steps))
-
-    def zones_of(self, group: int) -> range:
-        """Return the zones of a group."""
-        begins = self.groups.room[kernel.BEGIN : GROUP * int(self.state[GROUPS]) : GROUP]
-        end = int(begins[group + 1]) if group + 1 < len(begins) else self.count
-        return range(int(begins[group]), end)
-
-
-def steps_left(automaton: TimedAutomaton, ends: Sequence[int]) -> NDArray[np.int32]:
-    """Return for each location the least number of edges to an end, `FREE` if no end is reachable."""
-    sources, targets = automaton.arrows()
-    left = np.full(len(automaton), FREE, np.int32)
-    left[ends] = 0
-    while True:
-        nearer = left.copy()
-        np.minimum.at(nearer, sources, np.minimum(left[targets] + 1, FREE))
-        if np.array_equal(nearer, left):
-            return left
-        left = nearer

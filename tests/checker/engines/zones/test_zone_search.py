@@ -2,8 +2,9 @@
 
 from checker.engines.zones import earliest_dates
 from checker.engines.zones.first_run import first_run
+from checker.engines.zones.shortest_run import steps_left
 from checker.engines.zones.timed_automaton import Constraint, Edge, Location, TimedAutomaton
-from checker.engines.zones.zone_search import Search, steps_left
+from checker.engines.zones.zone_search import Search
 
 STANDS = ((0, -1),)
 """No time passes."""
