@@ -6,9 +6,9 @@ steps whose events its local states allow.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache, cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -127,56 +127,61 @@ class Division:
         steps = enumerate(each.step for each in self.states.network.timing.clauses)
         return frozenset(begin + number for number, step in steps if isinstance(step, Window | Sayable))
 
-    def _clocks(self, at: int, process: int) -> list[int]:
-        """Return the indices of a process's clocks in a location."""
-        key = self._running[at], process
-        if key not in self._known:
-            mine = {process, NONE} if process in self._timekeepers else {process}
-            owners = (self._owners[each] for each in key[0])
-            self._known[key] = [index for index, owner in enumerate(owners, 1) if owner in mine]
-        return self._known[key]
+    def _clocks(self, running: tuple[int, ...], process: int) -> list[int]:
+        """Return the indices of a process's clocks among those that run in a location."""
+        mine = {process, NONE} if process in self._timekeepers else {process}
+        return [index for index, clock in enumerate(running, 1) if self._owners[clock] in mine]
 
     @cached_property
     def _running(self) -> list[tuple[int, ...]]:
+        """The clocks that run in each location."""
         return [self.automaton.location(at).clocks for at in range(len(self.automaton))]
-
-    @cached_property
-    def _known(self) -> dict[tuple[tuple[int, ...], int], list[int]]:
-        return {}
 
     # --- events and automata
 
     def _events(self, at: int) -> Iterator[_Event]:
+        numbers = self.states.numbers
         for edge in self.automaton.out(at):
-            takes = self.states.participants.of(edge.footprint)
-            clocks = {each: self._clocks(at, each) for each in takes}
-            guards: dict[int, list[Constraint]] = {each: [] for each in takes}
-            for test in edge.tests:
-                owner = next(each for each in takes if test.clock in clocks[each])
-                guards[owner].append(test._replace(clock=clocks[owner].index(test.clock) + 1))
-            sources = [
-                tuple(
-                    clocks[each].index(edge.sources[one - 1]) + 1 if edge.sources[one - 1] else 0
-                    for one in self._clocks(edge.target, each)
-                )
-                for each in takes
-            ]
-            yield _Event(
-                takes,
-                tuple(int(self.states.numbers[each][at]) for each in takes),
-                tuple(int(self.states.numbers[each][edge.target]) for each in takes),
-                tuple(tuple(each) for each in guards.values()),
-                tuple(sources),
+            parts = self._known_parts(edge[1:2] + edge[3:], self._running[at], self._running[edge.target])
+            before, after = (
+                tuple(numbers[each][place] for each in parts.takes) for place in (at, edge.target)
             )
+            yield parts._replace(before=before, after=after)
+
+    @cached_property
+    def _known_parts(self) -> Callable[..., _Event]:
+        return cache(self._parts)
+
+    def _parts(
+        self,
+        edge: tuple[tuple[Constraint, ...], tuple[int, ...], int],
+        running: tuple[int, ...],
+        later: tuple[int, ...],
+    ) -> _Event:
+        """Return the clocks of an event, given an edge's tests, sources and footprint, and the clocks at its ends."""
+        tests, sources, footprint = edge
+        takes = self.states.participants.of(footprint)
+        clocks = {each: self._clocks(running, each) for each in takes}
+        guards: dict[int, list[Constraint]] = {each: [] for each in takes}
+        for test in tests:
+            owner = next(each for each in takes if test.clock in clocks[each])
+            guards[owner].append(test._replace(clock=clocks[owner].index(test.clock) + 1))
+        begun = [[sources[clock - 1] for clock in self._clocks(later, each)] for each in takes]
+        kept = (
+            tuple(clocks[each].index(source) + 1 if source else 0 for source in several)
+            for each, several in zip(takes, begun, strict=True)
+        )
+        return _Event(takes, (), (), tuple(map(tuple, guards.values())), tuple(kept))
 
     def _process(
         self, process: int, edges: Mapping[int, list[Edge]], first: int, ages: Sequence[int], wrong: Wrong
     ) -> LocalAutomaton:
         states, automaton = self.states.numbers[process], TimedAutomaton()
-        _, shown = np.unique(states, return_index=True)
+        _, shown = np.unique(np.array(states), return_index=True)
         violated: dict[int, Sequence[Constraint]] = {}
         for state, at in enumerate(shown.tolist()):
-            indices, running = self._clocks(at, process), self._running[at]
+            running = self._running[at]
+            indices = self._clocks(running, process)
             mine = [each for each in self.automaton.deadlines_of(at) if each[2] == process]
             deadlines = tuple((indices.index(clock) + 1 if clock else 0, most) for clock, most, _ in mine)
             automaton.add(Location(tuple(running[each - 1] for each in indices), deadlines))
@@ -184,5 +189,5 @@ class Division:
             violated[state] = [each._replace(clock=indices.index(each.clock) + 1) for each in late]
         for state in range(len(automaton)):
             automaton.leave(state, edges.get(state, ()))
-        begun = tuple(ages[each - 1] for each in self._clocks(first, process))
-        return LocalAutomaton(self.states.name(process), automaton, int(states[first]), begun, violated)
+        begun = tuple(ages[each - 1] for each in self._clocks(self._running[first], process))
+        return LocalAutomaton(self.states.name(process), automaton, states[first], begun, violated)

@@ -35,12 +35,14 @@ class LocalStates:
     watch: NDArray[np.int64] | None = None
 
     @cached_property
-    def numbers(self) -> list[NDArray[np.int64]]:
+    def numbers(self) -> list[list[int]]:
         """For each process the number of its local state in each location."""
-        found = []
+        found: list[list[int]] = []
         for process in range(self.participants.automaton.processes):
-            _, which = np.unique(self._values(process), axis=0, return_inverse=True)
-            found.append(which.ravel())
+            values = self._values(process)
+            varying = values[:, (values != values[0]).any(axis=0)]
+            _, which = np.unique(varying, axis=0, return_inverse=True)
+            found.append(which.ravel().tolist())
         return found
 
     def name(self, process: int) -> str:
