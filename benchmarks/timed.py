@@ -1,10 +1,10 @@
 """Zones beside TChecker's: `make bench-time`, which prints a table; TCHECKER names its program `tck-reach`.
 
 A mission of the timed family is explored, which learns the rules on the way, and then once more, when the automaton is
-known: so long the compiled loops take. Under `program_order` the UAVs are independent. So TChecker gets a network of as
-many processes, each of them one UAV's automaton with its endurance (`bigactors export`), and searches that in local
-time (`-a concur19`), with `--clock global` under one clock (`-a covreach`). Zones are those that were followed, of
-both. Seconds are the processor's, of TChecker its whole run's.
+known: so long the compiled loops take. Under `program_order` the UAVs are independent. TChecker gets the file of
+`bigactors export` with endurance, which has a process for each of them. It searches that in local time (`-a concur19`),
+with `--clock global` under one clock (`-a covreach`). Zones are those that were followed, of both. Seconds are the
+processor's, of TChecker its whole run's.
 """
 
 import argparse
@@ -79,7 +79,7 @@ def row(
         known = again(found.times) if found.complete else f"{found.bounds[0]} was met"
         ours = f"{size[0]:,} configurations, {size[1]:,} zones in {seconds:.2f} s, {known}"
         peer = (
-            beside(uavs, places, Path(folder), clock)
+            beside(text(uavs, places, scheduler=scheduler), Path(folder), clock)
             if found.complete and scheduler == "program_order"
             else ""
         )
@@ -110,13 +110,13 @@ def again(times: ZoneTimes) -> str:
     return f"known: {search.count / seconds:,.0f} zones/s, {peak:,} MiB in all"
 
 
-def beside(uavs: int, places: int, folder: Path, clock: ZoneClock) -> str:
+def beside(mission: str, folder: Path, clock: ZoneClock) -> str:
     """Let TChecker search the same zones, if it is here."""
     program = os.environ.get("TCHECKER")
     if program is None:
         return ""
     model = folder / "network.tck"
-    model.write_text(network(uavs, places, folder), encoding="utf-8")
+    model.write_text(exported(mission, folder), encoding="utf-8")
     algorithm = "concur19" if clock is ZoneClock.LOCAL else "covreach"
     ran = run_peer([program, "-a", algorithm, str(model)])
     if ran.status:
@@ -126,22 +126,12 @@ def beside(uavs: int, places: int, folder: Path, clock: ZoneClock) -> str:
     return f"; TChecker: {zones:,} zones in {seconds:.2f} s, {zones / seconds:,.0f} zones/s, {peak:,} MiB"
 
 
-def network(uavs: int, places: int, folder: Path) -> str:
-    """Return the family's mission for TChecker: a process for each UAV, whose names are its own."""
-    lines = ["system:family"]
-    for i in range(uavs):
-        found = explored(text(uavs, places, scheduler="program_order", only=[i]), folder)
-        assert isinstance(found.times, ZoneTimes)
-        model = model_of(found.times, Property(PropertyKind.ENDURANCE, "endurance"), "family")
-        for line in tchecker_text(model).splitlines()[1:]:
-            kind, *rest = line.split(":")
-            renamed = re.sub(r"\bx(\d+)\b", rf"x{i}_\1", line)
-            if kind == "event":
-                renamed = f"event:e{i}_{rest[0]}"
-            elif kind == "edge":
-                renamed = re.sub(r"^((?:[^:]*:){4})", rf"\1e{i}_", renamed)
-            lines.append(re.sub(r"\bmission\b", f"uav{i}", renamed))
-    return "\n".join([*lines, ""])
+def exported(mission: str, folder: Path) -> str:
+    """Return a mission for TChecker, a process for each UAV."""
+    found = explored(mission, folder)
+    assert isinstance(found.times, ZoneTimes)
+    endurance = Property(PropertyKind.ENDURANCE, "endurance")
+    return tchecker_text(model_of(found.times, endurance, "family", divided=True))
 
 
 if __name__ == "__main__":

@@ -1,18 +1,10 @@
 """The timed family: UAVs that each go round places of their own and come home, on batteries that just last."""
 
-from collections.abc import Iterable
 
-
-def text(
-    uavs: int, places: int, tick: int = 10, scheduler: str = "fcfs", only: Iterable[int] | None = None
-) -> str:
-    """Write the mission of so many UAVs, each with so many places to go to, in ticks of so many seconds.
-
-    With `only` it has but these of them: what the others do is independent of it, unless the scheduler has one queue.
-    """
+def text(uavs: int, places: int, tick: int = 10, scheduler: str = "fcfs") -> str:
+    """Write the mission of so many UAVs, each with so many places to go to, in ticks of so many seconds."""
     world, programs, timing = [], [], []
-    flying = range(uavs) if only is None else only
-    for i in flying:
+    for i in range(uavs):
         west = -8.5 + 0.2 * i
         names = [f"place{i}_{k}" for k in range(places)]
         for k, name in enumerate((f"home{i}", *names)):
@@ -33,7 +25,9 @@ def text(
             f"scheduler {scheduler}\ncontrol timed\n",
             f"timing {{\n  tick {tick} s\n" + "\n".join(timing) + f"\n  agents react within {tick} s\n}}\n",
             "check {\n  endurance\n"
-            + "".join(f'  within 2 h "there{i}": actually uav{i} in place{i}_{places - 1}\n' for i in flying)
+            + "".join(
+                f'  within 2 h "there{i}": actually uav{i} in place{i}_{places - 1}\n' for i in range(uavs)
+            )
             + "}\n",
         ]
     )

@@ -6,6 +6,7 @@ import os
 import sys
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from functools import cache
 from pathlib import Path
 from textwrap import dedent
 from typing import Any
@@ -16,13 +17,16 @@ from bigactors.files import make_folder, write_text
 from bigactors.lsp.textmate import textmate_grammar
 from bigactors.terminal import safe_output, say
 from checker.engines.capabilities import unsupported_table
+from checker.reduction.access_table import access_table
 from checker.reports.glossary import word_table
 from semantics.bigactor_rules import EXTENSION
 from semantics.bigactor_rules import say as say_rule
 from semantics.rules import RULES, TIMED_RULES, env
 from semantics.state.station_partition import PASSING
 from specs import code_table
+from specs.elaboration import load_mission
 from specs.language_reference import language_reference, whole_mission
+from specs.missions import shipped_missions
 
 FOLDER = Path(__file__).parent.parent / "docs"
 WIDTH = 100
@@ -125,8 +129,26 @@ def pages() -> dict[str, str]:
         "reference/whole.mission": whole_mission(),
         "reference/recording.md": "".join(recording_page()),
         "reference/rules.md": "".join(rules_page()),
+        "explanation/reduction.md": with_part(
+            "explanation/reduction.md", "reads and writes", reads_and_writes()
+        ),
         "../editors/vscode/syntaxes/mission.tmLanguage.json": textmate_grammar(),
     }
+
+
+def with_part(page: str, name: str, part: str) -> str:
+    """Return a page of docs/ with a generated part between its comments."""
+    text = (FOLDER / page).read_text(encoding="utf-8")
+    begin, end = f"<!-- generated: {name} -->\n", "<!-- end generated -->"
+    before, _, rest = text.partition(begin)
+    return f"{before}{begin}\n{part}\n{end}{rest.partition(end)[2]}"
+
+
+@cache
+def reads_and_writes() -> str:
+    """Return the table of the cells that rules read and write on the shipped missions."""
+    missions = (load_mission(name).initial for name in shipped_missions())
+    return "".join(f"{line}\n" for line in access_table(missions))
 
 
 def rules_page() -> Iterator[str]:

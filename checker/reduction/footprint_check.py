@@ -10,14 +10,13 @@ from contextlib import suppress
 from dataclasses import replace
 from typing import Any
 
-from checker.recording.access_recording import Asked, CellRecorder, CellSource, ColumnQuestion, Conclusion
-from checker.recording.value_templates import settled
+from checker.recording.access_recording import Asked, ColumnQuestion
+from checker.recording.whole_cells import recorded_cells, writes_of
 from checker.reduction.actor_footprints import Acting, Actor, Actors
 from checker.reduction.ample import Ample, disturbed
 from checker.reduction.footprint_slots import NOTHING, Slot, SlotFootprint
 from checker.reduction.race_footprints import ANSWERS, MARKS, slot_of_mark
 from semantics.behaviours.expressions import Fault, Literal
-from semantics.behaviours.observations import Fact
 from semantics.bigactor_rules import say, spawn
 from semantics.control import applicable, obstacle
 from semantics.properties.propositions import Proposition, holds
@@ -26,7 +25,7 @@ from semantics.races.provenance import ANY, Dependency, Key
 from semantics.races.relevance import possible_receivers, questions_of, relevant, slots_of
 from semantics.rules import env, rcv_obs
 from semantics.state.agents import AgentProvenance, mailbox_cell, watch_cell
-from semantics.state.cell_values import MONITOR, Cell, Changes, Row, has, is_something
+from semantics.state.cell_values import MONITOR, Cell, Changes, has, is_something
 from semantics.state.configuration import Configuration, Label, Transition
 from semantics.state.physical_model import is_aboard
 from semantics.state.printing import print_configuration
@@ -135,29 +134,7 @@ def varies(actors: Actors, cell: Cell) -> bool:
 
 def recorded(actors: Actors, c: Configuration) -> tuple[Asked, Configuration]:
     """Return a record of questions, and a configuration that fills it; questions about constant cells don't count."""
-    assert isinstance(c.state, Row)
-    recorder = CellRecorder(_Whole(c.state), c.state, lambda cell: varies(actors, cell), frozenset())
-    return recorder.scopes[0].asked, Configuration(c.setting, recorder)
-
-
-class _Whole(CellSource):
-    """Cells with undivided values."""
-
-    def __init__(self, row: Row) -> None:
-        self.row = row
-
-    def skeleton(self, cell: Cell) -> Any:
-        return self.row.read(cell)
-
-    def fact(self, cell: Cell, number: int, name: Name) -> Fact:
-        raise NotImplementedError  # values are undivided
-
-
-def _written(step: Transition) -> Changes:
-    """Return the writes of a recorded step, fully evaluated."""
-    state = step.target.state
-    assert isinstance(state, Conclusion)
-    return {cell: settled(state.read(cell)) for cell in sorted(state.changed(state))}
+    return recorded_cells(c, lambda cell: varies(actors, cell))
 
 
 # --- visible cells --------------------------------------------------------------------------------------------------
@@ -220,13 +197,13 @@ class _Held:
         """Yield the reads, writes and marks of a rule's steps outside the footprint."""
         asked, over = recorded(self.actors, self.c)
         found = self.run(rule, over)
-        written = [_written(step) for step in found]
+        written = [writes_of(step) for step in found]
         beyond = [ask.cell for ask in asked if not self.may_read(rule, ask)]
         yield "reads", [cell for cell in beyond if self.matters(rule, cell, written)]
         for step, changes in zip(found, written, strict=True):
             yield "writes", [each for cell in changes for each in self.unwritten(rule, cell, changes[cell])]
             yield "keeps", [slot for slot in self.kept(changes) if not self.has(slot)]
-            known, after = set(asked), _written(marked(over, step))
+            known, after = set(asked), writes_of(marked(over, step))
             news = (ask for ask in asked if ask not in known and ask.cell[0] not in MEMORY)
             yield "reads", [ask.cell for ask in news if not self.may_read(rule, ask)]
             made = self.marks(after).difference(self.marks(changes))
@@ -250,7 +227,7 @@ class _Held:
         believable = (*self.actors.footprints.bounds.believable(cell[1]), REGION)
         others = (self.c.with_({cell: place}) for place in believable if not self.is_above(cell[1], place))
         return any(
-            [_written(step) for step in self.run(rule, recorded(self.actors, c)[1])] != written
+            [writes_of(step) for step in self.run(rule, recorded(self.actors, c)[1])] != written
             for c in others
         )
 

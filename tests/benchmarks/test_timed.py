@@ -84,11 +84,9 @@ def test_a_deadline_flips_at_the_same_moment_in_local_time(most, outcome):
     assert reports[0].verdicts == reports[1].verdicts
 
 
-def test_processes_of_a_network_share_no_names(tmp_path):
-    lines = timed.network(2, 1, tmp_path).splitlines()
-    declared = [line for line in lines if line.split(":")[0] in ("event", "process", "clock")]
-    assert len(set(declared)) == len(declared)
-    for i, other in ((0, 1), (1, 0)):
-        own = [line for line in lines if f":uav{i}:" in line]
-        assert own
-        assert not any(f"x{other}_" in line or f"e{other}_" in line for line in own)
+def test_tchecker_gets_a_process_for_each_uav_and_nothing_that_they_share(tmp_path):
+    lines = timed.exported(timed_family.text(2, 1, scheduler="program_order"), tmp_path).splitlines()
+    assert [line for line in lines if line.startswith("process:")] == [
+        f"process:agent_patrol{i}" for i in (0, 1)
+    ]
+    assert not [line for line in lines if line.startswith("sync:")]

@@ -17,19 +17,49 @@ def exported(capsys, *arguments, form="tchecker"):
 
 @pytest.mark.parametrize("name", TIMED)
 def test_an_automaton_is_closed(capsys, name):
-    text = exported(capsys, name)
+    text = exported(capsys, name, "--clock", "global")
     locations = re.findall(r"^location:mission:(\w+)\{", text, re.MULTILINE)
     clocks = re.findall(r"^clock:1:(\w+)$", text, re.MULTILINE)
     edges = re.findall(r"^edge:mission:(\w+):(\w+):(\w+)\{", text, re.MULTILINE)
     assert len(set(locations)) == len(locations)
     assert {place for source, target, _ in edges for place in (source, target)} == set(locations)
     assert {event for *_, event in edges} == set(re.findall(r"^event:(\w+)$", text, re.MULTILINE))
-    assert set(re.findall(r"\bx\d+\b", text)) == set(clocks)
+    assert set(re.findall(r"\b(?:x\d+|stay_mission)\b", text)) == set(clocks)
+
+
+def test_each_process_of_local_time_is_one_with_clocks_of_its_own(capsys):
+    text = exported(capsys, "relay_timed", "--scheduler", "program_order", "--property", "the report")
+    processes = re.findall(r"^process:(\w+)$", text, re.MULTILINE)
+    named = ["agent_desk", "agent_eye", "environment_0", "observer", "cells_0", "cells_1", "cells_2"]
+    assert processes == named
+    owners = {}
+    for process, rest in re.findall(r"^(?:location|edge):(\w+)(.*)$", text, re.MULTILINE):
+        for clock in re.findall(r"\b(?:x\d+_\d+|stay_\w+)\b", rest):
+            owners.setdefault(clock, set()).add(process)
+    assert owners.keys() == set(re.findall(r"^clock:1:(\w+)$", text, re.MULTILINE))
+    assert all(len(several) == 1 for several in owners.values())
+    shared = re.findall(r"^sync:(.*)$", text, re.MULTILINE)
+    assert all(len({part.split("@")[1] for part in each.split(":")}) == 1 for each in shared)
+    assert not re.search(r"urgent:|committed:|[^<>]= [1-9]", text)
+
+
+@pytest.mark.parametrize(
+    ("name", "why"),
+    [
+        ("endurance", "fcfs has one queue of all requests"),
+        ("crossing_timed --clock global", None),
+        ("crossing_timed", None),
+        ("endurance --scheduler program_order", "the mission has a single bigActor and no environment"),
+    ],
+)
+def test_a_single_process_has_its_reason(capsys, name, why):
+    assert main(["export", "--format", "tchecker", *name.split()]) == 0
+    assert capsys.readouterr().err == ("" if why is None else f"it has a single process: {why}\n")
 
 
 def test_a_flight_has_its_interval(capsys):
     text = exported(capsys, "endurance")
-    assert "location:mission:first{initial: : committed: }" in text
+    assert len(re.findall(r"^location:mission:l\d+\{initial:", text, re.MULTILINE)) == 1
     assert re.search(r"location:mission:l\d+\{invariant: x\d+ <= \d+\}", text)
     assert re.search(r"edge:mission:l\d+:l\d+:s0\{provided: x\d+ >= \d+\b", text)
 

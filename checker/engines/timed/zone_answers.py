@@ -45,6 +45,7 @@ from checker.limits import look
 from checker.properties.critical_path import way_to
 from checker.properties.inspections import InTime
 from checker.properties.longest_stays import NEVER
+from semantics.properties.property import Property
 from semantics.properties.propositions import Proposition
 from semantics.state.configuration import Configuration, Transition
 from semantics.state.setting import Scheduler
@@ -338,6 +339,14 @@ class ZoneTimes:
         if asked is None:
             rule[:, over & ~begins] = CUT_OFF
         return rule
+
+    def observer(self, asked: Property) -> Observer:
+        """Return the observer of a deadline, whose goal is that it is missed."""
+        awaited = asked.formula if asked.then is None else asked.then
+        begins = None if asked.then is None else asked.formula
+        meter = Meter(asked.bound + 1, goal=(ObserverClock.ON, asked.bound + 1))
+        asks = (awaited,) if begins is None else (begins, awaited)
+        return self._observer(self.waiting(begins, awaited), meter, asks)
 
     def within(self, asked: Proposition | None, awaited: Proposition, most: int) -> WaitAnswer:
         """Return the longest wait for a proposition from the start, or from wherever another one is true."""

@@ -1,36 +1,35 @@
-"""A mission's timed automaton in a form for other model checkers: one process, whose edges are the steps.
+"""A mission's timed automaton in a form for other model checkers: one process, or one for each process of local time.
 
-Their clocks are global and start at 0, and a location can't be entered in violation of its invariant. So an initial
-committed location sets clocks that don't start at 0, and entry past a deadline leads to an urgent copy of the location.
-UPPAAL copies no clocks, so a continuing clock keeps its name. A location has one copy for each naming of its clocks;
-there are several only where equal requests are pending.
+Their clocks start at 0. So until its first reset, a clock with a greater age at the start is compared with constants
+that are smaller by this age. A location can't be entered in violation of its invariant. So entry past a deadline leads
+to a copy of the location in which no time passes. They copy no clocks, so a continuing clock keeps its name. A location
+has one copy for each naming of its clocks; there are several only where equal requests are pending.
 """
 
 from __future__ import annotations
 
 from collections import Counter, defaultdict
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from itertools import count, islice
+from itertools import chain, count, islice
 from typing import Final, NamedTuple
 
+import numpy as np
+
 from checker.engines.timed.zone_answers import ZoneTimes
-from checker.engines.zones.observers import Meter, Observer, ObserverClock
+from checker.engines.zones.local_automata import Division, LocalAutomaton, Wrong
+from checker.engines.zones.local_states import LocalStates
+from checker.engines.zones.observers import Observer, ObserverClock
 from checker.engines.zones.timed_automaton import Constraint, Edge, TimedAutomaton
-from checker.engines.zones.timed_automaton_of import Network
 from semantics.properties.kinds import PropertyKind
 from semantics.properties.property import Property
-from semantics.timing.actor_clocks import ActorClock
-
-FIRST: Final = "first"
-"""The initial location; no time passes in it."""
 
 WRONG: Final = "wrong"
 """The location that is reachable exactly if the property is violated."""
 
 
 class ExportedLocation(NamedTuple):
-    """A location: its name and invariant, or that it is urgent."""
+    """A location: its name and invariant, or that no time passes in it."""
 
     name: str
     invariant: tuple[str, ...] = ()
@@ -42,10 +41,10 @@ class ExportedEdge(NamedTuple):
 
     Attributes:
         source, target: The names of its locations.
-        event: A short name of its step: the step's number in its configuration.
+        event: The name of its event: a step, by its number in its configuration, or a step of several processes.
         words: The label of its step, as in traces.
         guard: A conjunction of comparisons of clocks with constants.
-        sets: The assignments to clocks.
+        resets: The clocks that begin anew.
     """
 
     source: str
@@ -53,104 +52,203 @@ class ExportedEdge(NamedTuple):
     event: str
     words: str = ""
     guard: tuple[str, ...] = ()
-    sets: tuple[tuple[str, int], ...] = ()
+    resets: tuple[str, ...] = ()
 
 
-class ExportedAutomaton(NamedTuple):
-    """A timed automaton.
+class ExportedProcess(NamedTuple):
+    """A process.
 
     Attributes:
-        name: The mission's name.
-        asked: The property of `WRONG`.
+        name: Its name.
         clocks: The names of its clocks.
-        places: Its locations, without `FIRST` and `WRONG`.
+        places: Its locations, without `WRONG`; it begins in the first one.
         steps: Its edges.
     """
 
     name: str
-    asked: Property | None
     clocks: tuple[str, ...]
     places: tuple[ExportedLocation, ...]
     steps: tuple[ExportedEdge, ...]
 
+    @property
+    def can_be_wrong(self) -> bool:
+        """Whether it has the location `WRONG`."""
+        return any(step.target == WRONG for step in self.steps)
 
-def model_of(times: ZoneTimes, asked: Property | None, name: str) -> ExportedAutomaton:
+
+class ExportedAutomaton(NamedTuple):
+    """A network of timed automata.
+
+    Attributes:
+        name: The mission's name.
+        asked: The property of `WRONG`.
+        processes: Its processes.
+        shared: The events of several processes, each with the numbers of its participants.
+    """
+
+    name: str
+    asked: Property | None
+    processes: tuple[ExportedProcess, ...]
+    shared: tuple[tuple[str, tuple[int, ...]], ...] = ()
+
+
+class _Question(NamedTuple):
+    """An automaton with the question of a property.
+
+    Attributes:
+        automaton: The mission's automaton, or that with a deadline's observer.
+        first, ages: Its first location, and the clock values there.
+        wrong: The clock constraints that violate the property in each location.
+        observer: The observer; None without one.
+    """
+
+    automaton: TimedAutomaton
+    first: int
+    ages: tuple[int, ...]
+    wrong: Wrong
+    observer: Observer | None = None
+
+    def behind(self, location: int) -> int:
+        """Return the mission's location behind a location."""
+        return location if self.observer is None else self.observer.spot(location).location
+
+
+def model_of(
+    times: ZoneTimes, asked: Property | None, name: str, *, divided: bool = False
+) -> ExportedAutomaton:
     """Return a mission's automaton; with a deadline or an endurance, `WRONG` is reachable exactly if it is violated.
+
+    If `divided`, it has a process for each one of local time; the search must have been in local time.
 
     Raises:
         ValueError: The property is of another kind.
     """
+    question = _question(times, asked)
+    subjects = (*times.network.clocks_of, None)  # the last one is an observer's
+    if divided:
+        found = _division(times, question).divided(question.first, question.ages, question.wrong)
+        processes = (
+            _Walk(each, subjects, f"x{number}_", "e").process() for number, each in enumerate(found.processes)
+        )
+        shared = ((f"e{number}", takes) for number, takes in enumerate(found.events) if len(takes) > 1)
+        return ExportedAutomaton(name, asked, tuple(processes), tuple(shared))
+
+    def words(location: int, step: int) -> str:
+        place = times.network.place(question.behind(location))
+        return str(times.network.situation(place.number).steps[step].transition.label)
+
+    whole = LocalAutomaton("mission", *question[:4])
+    return ExportedAutomaton(name, asked, (_Walk(whole, subjects, "x", "s", words).process(),))
+
+
+def _question(times: ZoneTimes, asked: Property | None) -> _Question:
     network = times.network
-    if asked is None or asked.kind is PropertyKind.ENDURANCE:
-        locations = range(len(network.automaton))
-        wrong = {at: tuple(times.exhaustion(at).values()) for at in locations} if asked else {}
-        walk = _Walk(network, network.automaton, locations, wrong)
-        return _model(name, asked, walk, network.first, network.first_ages)
-    if asked.kind is not PropertyKind.WITHIN:
-        raise ValueError("only deadlines and endurance are exported")
-    awaited = asked.formula if asked.then is None else asked.then
-    rule = times.waiting(None if asked.then is None else asked.formula, awaited)
-    observer = Observer(network, rule, Meter(asked.bound + 1, goal=(ObserverClock.ON, asked.bound + 1)))
-    goals = ((at, observer.automaton.location(at).goal) for at in range(len(observer.automaton)))
-    late = {at: [goal] for at, goal in goals if goal is not None}
-    walk = _Walk(network, observer.automaton, observer.locations.tolist(), late)
-    return _model(name, asked, walk, 0, observer.first_ages())
+    match None if asked is None else asked.kind:
+        case None | PropertyKind.ENDURANCE:
+            locations = times.reached.tolist() if asked else []
+            wrong = {at: tuple(times.exhaustion(at).values()) for at in locations}
+            return _Question(network.automaton, network.first, network.first_ages, wrong)
+        case PropertyKind.WITHIN:
+            assert asked is not None
+            observer = times.observer(asked)
+            goals = ((at, observer.automaton.location(at).goal) for at in range(len(observer.automaton)))
+            late = {at: [goal] for at, goal in goals if goal is not None}
+            return _Question(observer.automaton, 0, observer.first_ages(), late, observer)
+        case _:
+            raise ValueError("only deadlines and endurance are exported")
 
 
-def _model(
-    name: str, asked: Property | None, walk: _Walk, location: int, ages: Sequence[int]
-) -> ExportedAutomaton:
-    first = walk.place(location, [""] * len(ages))
-    sets = tuple((clock, age) for clock, age in zip(first.names, ages, strict=True) if age)
-    steps = (ExportedEdge(FIRST, walk.spots[first], "begin", sets=sets), *walk.steps())
-    clocks = sorted({clock for spot in walk.spots for clock in spot.names}, key=lambda each: int(each[1:]))
-    return ExportedAutomaton(name, asked, tuple(clocks), tuple(walk.places()), steps)
+def _division(times: ZoneTimes, question: _Question) -> Division:
+    """Return the division of an automaton among the processes of local time."""
+    network, observer = times.network, question.observer
+    if observer is None:
+        assert network.participants is not None
+        states = LocalStates(network, network.participants, np.arange(len(network.automaton)))
+        return Division(network.automaton, states, times.reached)
+    assert observer.participants is not None
+    states = LocalStates(network, observer.participants, observer.locations.astype(np.int64), observer.watches.astype(np.int64))
+    return Division(observer.automaton, states, np.arange(len(observer.locations)))
 
 
 class _Spot(NamedTuple):
-    """A location with the names of its clocks, and whether it is the copy for entry past a deadline."""
+    """A copy of a location.
+
+    Attributes:
+        at: The location.
+        names: The names of its clocks.
+        begun: The age of each clock at the start, as long as it was not reset.
+        is_late: Whether it is the copy for entry past a deadline.
+    """
 
     at: int
     names: tuple[str, ...]
+    begun: tuple[int, ...]
     is_late: bool = False
+
+    def compared(self, test: Constraint) -> tuple[str, ...] | None:
+        """Return a constraint on a clock in words, None if it is never satisfied."""
+        clock, least, most = test
+        name, age = self.names[clock - 1], self.begun[clock - 1]
+        if 0 <= most < age:
+            return None
+        lower = (f"{name} >= {least - age}",) if least > age else ()
+        return lower if most < 0 else (*lower, f"{name} <= {most - age}")
 
 
 @dataclass(slots=True)
 class _Walk:
-    """The conversion of an automaton into a model.
+    """The conversion of an automaton into a process.
 
     Attributes:
-        network: The mission's automaton.
-        automaton: That automaton, or the one with an observer's clock.
-        locations: The mission's location behind each of the automaton's.
-        wrong: The clock constraints that violate the property in each location.
+        local: The automaton.
+        subjects: What each of its clocks measures.
+        clock, event: The beginning of the names of clocks, and of events.
+        words: The label of a step of a location.
         spots: The reached locations, with their names.
         met: The number of copies of each of the automaton's locations, in time or late.
-        names: The possible names of each clock; None stands for an observer's.
+        names: The possible names of each clock.
     """
 
-    network: Network
-    automaton: TimedAutomaton
-    locations: Sequence[int]
-    wrong: Mapping[int, Sequence[Constraint]]
+    local: LocalAutomaton
+    subjects: Sequence[Hashable]
+    clock: str
+    event: str
+    words: Callable[[int, int], str] = lambda location, step: ""  # noqa: ARG005 - no words are known
     spots: dict[_Spot, str] = field(default_factory=dict)
     met: Counter[tuple[int, bool]] = field(default_factory=Counter)
-    names: Mapping[ActorClock | None, tuple[str, ...]] = field(init=False)
+    names: Mapping[Hashable, tuple[str, ...]] = field(init=False)
 
     def __post_init__(self) -> None:
-        self.names = _named([Counter(self.clocks(at)) for at in range(len(self.automaton))])
+        locations = [Counter(self.clocks(at)) for at in range(len(self.automaton))]
+        self.names = _named(locations, self.clock)
 
-    def clocks(self, at: int) -> tuple[ActorClock | None, ...]:
-        """Return the measured subjects of a location's clocks."""
-        measured = self.network.clocks(self.locations[at])
-        return (*measured, *([None] if len(self.automaton.location(at).clocks) > len(measured) else []))
+    @property
+    def automaton(self) -> TimedAutomaton:
+        """The automaton."""
+        return self.local.automaton
 
-    def place(self, at: int, kept: Sequence[str], *, is_late: bool = False) -> _Spot:
+    def process(self) -> ExportedProcess:
+        """Return the process."""
+        self.place(self.local.first, [""] * len(self.local.ages), self.local.ages)
+        steps, places = list(self.steps()), tuple(self.places())
+        texts = chain(*(step.guard for step in steps), *(place.invariant for place in places))
+        compared = {text.split()[0] for text in texts}
+        names = dict.fromkeys(name for several in self.names.values() for name in several if name in compared)
+        kept = (
+            step._replace(resets=tuple(each for each in step.resets if each in compared)) for step in steps
+        )
+        return ExportedProcess(self.local.name, tuple(names), places, tuple(dict.fromkeys(kept)))
+
+    def clocks(self, at: int) -> tuple[Hashable, ...]:
+        """Return what a location's clocks measure."""
+        return tuple(self.subjects[each] for each in self.automaton.location(at).clocks)
+
+    def place(self, at: int, kept: Sequence[str], begun: Sequence[int], *, is_late: bool = False) -> _Spot:
         """Return a location with the names of its continuing clocks; the others (`""`) get free names."""
         names = list(kept)
         for rank, (name, clock) in enumerate(zip(kept, self.clocks(at), strict=True)):
             names[rank] = name or next(each for each in self.names[clock] if each not in names)
-        spot = _Spot(at, tuple(names), is_late)
+        spot = _Spot(at, tuple(names), tuple(begun), is_late)
         if spot not in self.spots:
             known = self.met[at, is_late]
             self.met[at, is_late] += 1
@@ -168,48 +266,40 @@ class _Walk:
     def _steps(self, spot: _Spot) -> Iterator[ExportedEdge]:
         for edge in self.automaton.out(spot.at):
             yield from self._step(spot, edge)
-        for clock, least, _ in self.wrong.get(spot.at, ()):
-            yield ExportedEdge(self.spots[spot], WRONG, WRONG, guard=(f"{spot.names[clock - 1]} >= {least}",))
+        for test in self.local.wrong.get(spot.at, ()):
+            yield ExportedEdge(self.spots[spot], WRONG, WRONG, guard=spot.compared(test) or ())
 
     def _step(self, spot: _Spot, edge: Edge) -> Iterator[ExportedEdge]:
-        tests = [
-            f"{spot.names[clock - 1]} {relation} {bound}"
-            for clock, least, most in edge.tests
-            for relation, bound, says in ((">=", least, least > 0), ("<=", most, most >= 0))
-            if says
-        ]
+        tests = [spot.compared(test) for test in edge.tests]
+        if None in tests:
+            return
         kept = [spot.names[one - 1] if one else "" for one in edge.sources]
+        begun = [spot.begun[one - 1] if one else 0 for one in edge.sources]
         ways = [(False, tests)]
         if not self.stands(edge.target):
-            late = [f"{spot.names[one - 1]} > {most}" for one, most in self._too_late(spot, edge)]
-            ways += [(True, [*tests, each]) for each in late]
+            ways += [(True, [*tests, late]) for late in self._too_late(spot, edge)]
         for is_late, guard in ways:
-            target = self.place(edge.target, kept, is_late=is_late)
-            sets = tuple((name, 0) for name, old in zip(target.names, kept, strict=True) if not old)
+            target = self.place(edge.target, kept, begun, is_late=is_late)
             yield ExportedEdge(
                 self.spots[spot],
                 self.spots[target],
-                f"s{edge.step}",
-                self._words(spot.at, edge.step),
-                tuple(guard),
-                sets,
+                f"{self.event}{edge.step}",
+                self.words(spot.at, edge.step),
+                tuple(text for each in guard for text in each or ()),
+                tuple(name for name, old in zip(target.names, kept, strict=True) if not old),
             )
 
-    def _too_late(self, spot: _Spot, edge: Edge) -> list[tuple[int, int]]:
-        """Return the clocks that may be past a deadline after an edge, with its bound."""
+    def _too_late(self, spot: _Spot, edge: Edge) -> Iterator[tuple[str, ...]]:
+        """Yield for each deadline after an edge that may have passed that it has."""
         before = {} if spot.is_late else dict(self.automaton.location(spot.at).deadlines)
-        after = [
-            (edge.sources[clock - 1], most) for clock, most in self.automaton.location(edge.target).deadlines
-        ]
-        return [(one, most) for one, most in after if one and before.get(one, most + 1) > most]
+        for clock, most in self.automaton.location(edge.target).deadlines:
+            one = edge.sources[clock - 1]
+            if one and before.get(one, most + 1) > most:
+                yield (f"{spot.names[one - 1]} > {most - spot.begun[one - 1]}",)
 
     def stands(self, at: int) -> bool:
         """Return whether a location is urgent."""
         return any(most < 0 for _, most in self.automaton.location(at).deadlines)
-
-    def _words(self, at: int, step: int) -> str:
-        situation = self.network.situation(self.network.place(self.locations[at]).number)
-        return str(situation.steps[step].transition.label)
 
     def places(self) -> Iterator[ExportedLocation]:
         """Yield the reached locations."""
@@ -218,24 +308,25 @@ class _Walk:
                 yield ExportedLocation(name, is_urgent=True)
             else:
                 deadlines = self.automaton.location(spot.at).deadlines
-                yield ExportedLocation(
-                    name, tuple(f"{spot.names[clock - 1]} <= {most}" for clock, most in deadlines)
+                bounds = (
+                    f"{spot.names[clock - 1]} <= {most - spot.begun[clock - 1]}" for clock, most in deadlines
                 )
+                yield ExportedLocation(name, tuple(bounds))
 
 
-def _named(locations: Sequence[Counter[ActorClock | None]]) -> dict[ActorClock | None, tuple[str, ...]]:
+def _named(locations: Sequence[Counter[Hashable]], begin: str) -> dict[Hashable, tuple[str, ...]]:
     """Return the names of each clock, as many as ever run at once, given the counts of clocks in each location.
 
     Clocks that never run together may share a name, so names are few.
     """
-    most: Counter[ActorClock | None] = Counter()
-    beside: defaultdict[ActorClock | None, set[ActorClock | None]] = defaultdict(set)
+    most: Counter[Hashable] = Counter()
+    beside: defaultdict[Hashable, set[Hashable]] = defaultdict(set)
     for each in locations:
         most |= each
         for clock in each:
             beside[clock].update(each)
-    numbers: dict[ActorClock | None, list[int]] = {}
+    numbers: dict[Hashable, list[int]] = {}
     for clock, others in beside.items():
         taken = {number for other in others for number in numbers.get(other, ())}
         numbers[clock] = list(islice((each for each in count() if each not in taken), most[clock]))
-    return {clock: tuple(f"x{each}" for each in found) for clock, found in numbers.items()}
+    return {clock: tuple(f"{begin}{each}" for each in found) for clock, found in numbers.items()}

@@ -159,16 +159,25 @@ def explore_in_zones(initial: Configuration, inspect: Iterable[Inspect], options
 
 
 def _is_local(initial: Configuration, options: Options) -> bool:
-    """Whether to search in local time: it is sound without an order of all requests, exchanges, and new agents."""
-    setting = initial.setting
+    """Whether to search in local time."""
     return (
         options.clock is ZoneClock.LOCAL
-        and len(initial.alpha.names()) + len(setting.environment) > 1
-        and setting.scheduler is not Scheduler.FCFS
+        and not why_global(initial)
         and _exchange(options) is None
-        and not any(isinstance(each, Spawn) for each in setting.program.statements)
-        and not _goes_on_with_one_clock(setting, options)
+        and not _goes_on_with_one_clock(initial.setting, options)
     )
+
+
+def why_global(initial: Configuration) -> str:
+    """Return why a mission is always searched by one clock, empty if local time is sound and may gain something."""
+    setting = initial.setting
+    if setting.scheduler is Scheduler.FCFS:
+        return "fcfs has one queue of all requests"
+    if any(isinstance(each, Spawn) for each in setting.program.statements):
+        return "spawn makes new bigActors"
+    if len(initial.alpha.names()) + len(setting.environment) == 1:
+        return "the mission has a single bigActor and no environment"
+    return ""
 
 
 def _goes_on_with_one_clock(setting: Setting, options: Options) -> bool:

@@ -125,7 +125,7 @@ class Participants:
 
     def divide(self) -> bool:
         """Work out the processes; return whether they changed."""
-        touched, wrote = self._bits(self.touched), self._bits(self.wrote)
+        touched, wrote = self.bits(self.touched), self.bits(self.wrote)
         begin = sum(self.sizes[:2])
         home = np.arange(self.total)
         for vehicle in range(begin, begin + self.sizes[2]):
@@ -164,7 +164,7 @@ class Participants:
         if not new or division is None:
             return
         home, cells = division
-        bits = self._bits(np.frombuffer(b"".join(new), np.uint64), self.size)
+        bits = self.bits(np.frombuffer(b"".join(new), np.uint64), self.size)
         begin = WORD * (self.size - self.words)
         for each in bits:
             columns = cells[each[begin:]]
@@ -172,7 +172,13 @@ class Participants:
             automaton.takes.append(*members.tolist())
             automaton.takes_from.append(len(automaton.takes))
 
-    def _bits(self, words: NDArray[np.uint64], size: int | None = None) -> Bits:
+    def of(self, footprint: int) -> tuple[int, ...]:
+        """Return the participants of a footprint, in their order."""
+        begin, end = self.automaton.takes_from.room[footprint : footprint + 2]
+        return tuple(self.automaton.takes.room[begin:end].tolist())
+
+    def bits(self, words: NDArray[np.uint64], size: int | None = None) -> Bits:
+        """Return sets of so many words, those of columns by default, a row each."""
         rows = words.reshape(-1, self.words if size is None else size)
         found: Bits = np.unpackbits(rows.view(np.uint8), axis=1, bitorder="little").astype(np.bool_)
         return found
@@ -231,3 +237,8 @@ class WatchedParticipants(Participants):
     def join(self) -> None:
         """Note the participants of all edges."""
         self._join()
+
+    def read(self) -> Bits:
+        """Return the columns that the observer reads in each of the mission's locations."""
+        kinds = [each.to_bytes(8 * self.words, "little") for each in self.kinds]
+        return self.bits(np.frombuffer(b"".join(kinds), np.uint64))[self.kind_of]

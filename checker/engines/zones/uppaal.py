@@ -4,7 +4,6 @@ from collections.abc import Iterator, Sequence
 from xml.sax.saxutils import escape, quoteattr
 
 from checker.engines.zones.automaton_export import (
-    FIRST,
     WRONG,
     ExportedAutomaton,
     ExportedEdge,
@@ -18,25 +17,25 @@ DOCUMENT_TYPE = (
 
 
 def uppaal_text(model: ExportedAutomaton) -> str:
-    """Return a model as text; with a property, its query is satisfied exactly if the property holds."""
+    """Return a model of one process as text; with a property, its query is satisfied exactly if the property holds."""
     return "\n".join([*_lines(model), ""])
 
 
 def _lines(model: ExportedAutomaton) -> Iterator[str]:
+    (process,) = model.processes
     yield '<?xml version="1.0" encoding="utf-8"?>'
     yield DOCUMENT_TYPE
     yield "<nta>"
     yield _element("declaration", f"// {model.name}")
     yield "<template>"
     yield _element("name", "Mission")
-    if model.clocks:
-        yield _element("declaration", f"clock {', '.join(model.clocks)};")
-    yield f'<location id="{FIRST}">{_element("name", FIRST)}<committed/></location>'
-    yield from map(_location, model.places)
+    if process.clocks:
+        yield _element("declaration", f"clock {', '.join(process.clocks)};")
+    yield from map(_location, process.places)
     if model.asked is not None:
         yield f'<location id="{WRONG}">{_element("name", WRONG)}</location>'
-    yield f'<init ref="{FIRST}"/>'
-    yield from map(_transition, model.steps)
+    yield f'<init ref="{process.places[0].name}"/>'
+    yield from map(_transition, process.steps)
     yield "</template>"
     yield _element("system", "mission = Mission();\nsystem mission;")
     if model.asked is not None:
@@ -52,7 +51,7 @@ def _location(place: ExportedLocation) -> str:
 
 def _transition(step: ExportedEdge) -> str:
     ends = f'<source ref="{step.source}"/><target ref="{step.target}"/>'
-    sets = [f"{clock} = {to}" for clock, to in step.sets]
+    sets = [f"{clock} = 0" for clock in step.resets]
     words = [step.words] if step.words else []
     labels = (
         _label("guard", " && ", step.guard) + _label("assignment", ", ", sets) + _label("comments", "", words)

@@ -1,6 +1,7 @@
 """Missions with times as other model checkers read them, with questions, and TChecker's answers where it is."""
 
 import os
+import re
 import subprocess
 
 from checked_missions import load
@@ -24,14 +25,14 @@ def timed_verdicts(verdicts):
     return [each for each in verdicts if each.property.kind in (PropertyKind.WITHIN, PropertyKind.ENDURANCE)]
 
 
-def written(c, asked):
+def written(c, asked, *, divided=False):
     found = explore(c, engine=Engine.FAST)
-    return model_of(found.times, asked, "a mission")
+    return model_of(found.times, asked, "a mission", divided=divided)
 
 
-def agree(c, asked, judge):
+def agree(c, asked, judge, *, divided=False):
     for verdict in timed_verdicts(check(c, asked).verdicts):
-        assert judge(written(c, verdict.property)) is verdict.outcome
+        assert judge(written(c, verdict.property, divided=divided)) is verdict.outcome
 
 
 EQUAL = """
@@ -56,10 +57,21 @@ def questions(draw):
     return c, draw(asked_of(c))
 
 
-def found_by_tchecker(text, folder):
+def found_by_tchecker(text, folder, algorithm="covreach"):
     """Ask TChecker whether what is labelled is reachable."""
+    said = asked_of_tchecker(text, folder, "-a", algorithm, "-l", "wrong")
+    return Outcome.VIOLATED if "REACHABLE true" in said else Outcome.HOLDS
+
+
+def reached_by_tchecker(text, folder, algorithm):
+    """Ask TChecker for the reachable tuples of locations; copies of a location count as one."""
+    graph = asked_of_tchecker(text, folder, "-a", algorithm, "-C", "graph")
+    tuples = re.findall(r'vloc="<([^>]*)>"', graph)
+    return {tuple(re.findall(r"[lu](\d+)(?:_\d+)?(?:,|$)", each)) for each in tuples}
+
+
+def asked_of_tchecker(text, folder, *options):
     model = folder / "model.tck"
     model.write_text(text, encoding="utf-8")
-    program = [os.environ["TCHECKER"], "-a", "covreach", "-l", "wrong", str(model)]
-    said = subprocess.run(program, capture_output=True, text=True, check=True).stdout
-    return Outcome.VIOLATED if "REACHABLE true" in said else Outcome.HOLDS
+    program = [os.environ["TCHECKER"], *options, str(model)]
+    return subprocess.run(program, capture_output=True, text=True, check=True).stdout

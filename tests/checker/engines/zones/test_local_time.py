@@ -12,10 +12,14 @@ from timed_missions import timed_missions
 from timed_reports import assert_alike
 
 from checker import Engine, Keeping, Limits, ZoneClock, check, explore
+from checker.engines.fast.decision_leaves import FIRST, LEAF
 from checker.engines.fast.learner import TransitionGroup
-from checker.engines.zones.participants import Participants
-from checker.engines.zones.timed_automaton import EDGE, FOOTPRINT, LEARNED
+from checker.engines.zones.participants import WORD, Participants
+from checker.engines.zones.timed_automaton import EDGE, EDGES, EDGES_END, FOOTPRINT, LEARNED, LOCATION
+from checker.engines.zones.timed_automaton_of import Network
 from semantics.state.setting import Scheduler
+from semantics.successors import by_clause, moves, served
+from semantics.timing.actor_clocks import of_clause, of_moves, of_requests
 from specs.elaboration import load_mission
 
 
@@ -126,3 +130,69 @@ timing { uav1 flies at 200 m/s to 1000 m/s agents react within 2 s messages over
 
 def test_without_shared_columns_steps_come_in_an_order_that_no_time_allows(monkeypatch):
     assert reaches_more(load(ONE_VEHICLE).initial, monkeypatch, "shared", lambda *_: np.zeros(0, np.int64))
+
+
+def only_what_steps_touch(participants, begun, end):
+    """Let no shared column take part because a participant begins or ceases to read it."""
+    ORIGINAL(participants, begun, end)
+    edges, records = (
+        participants.automaton.edges.room,
+        participants.automaton.locations.used.reshape(-1, LOCATION),
+    )
+    begin = WORD * (participants.size - participants.words)
+    for at in range(begun, end):
+        (location,) = np.flatnonzero((records[:, EDGES] <= at) & (at < records[:, EDGES_END]))
+        record = edges[EDGE * at : EDGE * (at + 1)]
+        whole = int.from_bytes(participants.found[record[FOOTPRINT]], "little")
+        touched = columns_of(
+            participants, int(record[LEARNED]), int(participants.automaton.rows.room[location])
+        )
+        kept = whole & ((1 << begin) - 1) | sum(1 << begin + each for each in touched)
+        assert whole & kept == kept
+        record[FOOTPRINT] = participants._number(kept.to_bytes(8 * participants.size, "little"))
+    participants._join()
+
+
+def columns_of(participants, step, row):
+    """Return the columns that a step of a row reads and writes."""
+    network, learner = participants.network, participants.learner
+    rules, about = learner.whose[step]
+    clocks = {served: of_requests, moves: of_moves, by_clause: of_clause}[rules]
+    key = clocks, learner.setting.environment.index(about) if rules is by_clause else about
+    parts = [tree for tree in learner.leaves.parts_of(step) if tree in learner.writing_trees]
+    trees = [learner.tree(learner.whose[step]), network.questions[key], *parts]
+    leaves = [int(network.model.classify(tree, np.array([row]))[0]) for tree in trees]
+    steps = [step, *(int(learner.leaves.leaves.room[LEAF * leaf + FIRST]) for leaf in leaves[2:])]
+    reads, writes, copies = (
+        participants.bits(each.used)
+        for each in (participants.reads, participants.writes, participants.copies)
+    )
+    touched = reads[leaves].any(axis=0) | writes[steps].any(axis=0) | copies[step]
+    return np.flatnonzero(touched).tolist()
+
+
+HANDED_ON = """
+BigActor a hosted_at gcs1 with_behavior { control(HAND uav0 TO gcs2) }
+BigActor b hosted_at gcs0 with_behavior { control(HAND uav0 TO gcs1) }
+BigActor c hosted_at gcs0 with_behavior { react { case "never" => after 50 s => } }
+scheduler program_order
+control timed
+timing { HAND takes 100 s to 400 s agents react within 100 s }
+"""
+
+
+def test_a_participant_that_begins_to_read_a_column_must_not_be_ahead_of_who_wrote_it(monkeypatch):
+    """Both take 100 s to hand it on, so it is in gcs2 after 200 s, and c waits no longer than 150 s.
+
+    The clock of a's request starts when uav0 comes to gcs1. If a request at 0 s could find it there already, as it is
+    at 100 s, its clock would run since 0 s.
+    """
+    run = Network._run
+
+    def with_its_network(network, loop):
+        if network.participants is not None:
+            network.participants.network = network
+        run(network, loop)
+
+    monkeypatch.setattr(Network, "_run", with_its_network)
+    assert reaches_more(load(HANDED_ON).initial, monkeypatch, "take", only_what_steps_touch)
