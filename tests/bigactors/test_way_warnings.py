@@ -87,9 +87,12 @@ def test_a_place_of_which_the_text_knows_only_the_variable_counts():
     [
         (ACROSS, ["drum0, aboard boat0, may cross prison0 on its way from west0 to east0"]),
         (f"control(MOVE_HOST_TO middle0) {LOADED} {ACROSS}", []),
-        (f"control(MOVE_HOST_TO middle0) {ACROSS} {LOADED}", ["drum0, aboard boat0, may cross prison0 on its way from middle0 to east0"]),
+        (
+            f"control(MOVE_HOST_TO middle0) {ACROSS} {LOADED}",
+            ["drum0, aboard boat0, may cross prison0 on its way from middle0 to east0"],
+        ),
     ],
-)  # fmt: skip
+)
 def test_a_passenger_crosses_with_its_carrier_only(body, after):
     before, found = warned(mission("not actually drum0 in prison0", c=body))
     assert before
@@ -138,7 +141,7 @@ def test_a_vehicle_that_waits_where_the_mission_put_it_was_not_sent():
     before, after = warned(
         mission(APART, a="control(MOVE_HOST_TO west0)", b="react { case 2 => control(MOVE_HOST_TO west0) }")
     )
-    assert (len(before), after) == (1, [])  # fmt: skip
+    assert (len(before), after) == (1, [])
 
 
 # --- an exploration that does not know ------------------------------------------------------------
@@ -156,5 +159,7 @@ def test_suspicions_change_neither_counts_nor_notes():
     found = mission(FORBIDDEN, a=ACROSS, b=AROUND)
     plain, asked = check(found), check(found, suspected=found.suspicions)
     assert (plain.configurations, plain.transitions, plain.notes) == (
-        asked.configurations, asked.transitions, asked.notes
-    )  # fmt: skip
+        asked.configurations,
+        asked.transitions,
+        asked.notes,
+    )

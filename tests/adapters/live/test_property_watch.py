@@ -1,5 +1,7 @@
 """Invariants about ways while a mission runs: held against what is seen, to figures by pyproj."""
 
+import math
+
 import pytest
 from live_missions import TWO, Run, aged, mission, seen
 from pyproj import Geod
@@ -273,6 +275,13 @@ def test_a_vehicle_that_is_not_heard_any_more_may_be_anywhere():
     run.turn(9.0, aged(seen("uav0", WEST, 9.0), 5.0))
     assert standing(run).figure == "uav1 is not seen and may be anywhere; uav0 at least 50 m from uav1"
     assert not standing(run).holds
+
+
+def test_a_vehicle_that_may_leave_its_area_has_the_metres_and_the_point():
+    run = watching('invariant "in": surely uav0 in west0', body=FLIES)
+    beyond = metres(EAST, (EAST[0], -8.64))
+    assert standing(run, "in").figure == f"uav0 may be up to {math.ceil(beyond)} m outside west0"
+    assert metres(standing(run, "in").points[0], EAST) < 0.1
 
 
 SENT = 'BigActor b hosted_at gcs0 with_behavior { react { case "go" => control(MOVE uav1 TO east0%s) } }'
