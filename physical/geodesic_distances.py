@@ -317,5 +317,5 @@ def _rims(frame: GnomonicFrame, spots: Any, azimuths: Any, metres: float) -> Any
     """Return for each spot the points of the frame that are some metres from it."""
     centres = np.repeat(frame.positions(spots), azimuths.shape[1], axis=0)
     far = np.full(len(centres), max(metres, 0.0))
-    easts, norths, _ = geod().fwd(*centres.T, azimuths.ravel(), far)
+    easts, norths, _ = geod().fwd(centres[:, 0], centres[:, 1], azimuths.ravel(), far)
     return frame.plane(np.column_stack([easts, norths])).reshape(*azimuths.shape, 2)
