@@ -33,13 +33,13 @@ AROUND = "control(MOVE_HOST_TO east0 VIA south0)"
 LOADED = "control(PUT drum0 IN middle0)"
 
 
-def mission(property_, **bodies):
+def mission(property_, more="", /, **bodies):
     hosts = {"a": "uav0", "b": "uav1", "c": "boat0"}
     agents = "".join(
         f"BigActor {name} hosted_at {hosts[name]} with_behavior {{ {body} }}\n"
         for name, body in bodies.items()
     )
-    return elaborated(f'{WORLD}{agents}\ncheck {{ invariant "p": {property_} }}')
+    return elaborated(f'{WORLD}{agents}{more}\ncheck {{ invariant "p": {property_} }}')
 
 
 def warned(found, **options):
@@ -142,6 +142,16 @@ def test_a_vehicle_that_waits_where_the_mission_put_it_was_not_sent():
         mission(APART, a="control(MOVE_HOST_TO west0)", b="react { case 2 => control(MOVE_HOST_TO west0) }")
     )
     assert (len(before), after) == (1, [])
+
+
+@pytest.mark.parametrize(("minutes", "meet"), [(1, True), (40, False)])
+def test_two_that_never_are_under_way_at_one_time_do_not_meet(minutes, meet):
+    """A flight of 14 km takes up to 12 minutes, and the way back as long."""
+    times = "timing { tick 10 s  UAV flies at 20 m/s to 30 m/s  agents react within 10 s }\n"
+    waits = f"react {{ after {minutes} min => {ACROSS} }}"
+    asked = mission(APART, times, a=f"{ACROSS} control(MOVE_HOST_TO west0)", b=waits)
+    before, after = warned(asked)
+    assert (len(before), bool(after)) == (1, meet)
 
 
 # --- an exploration that does not know ------------------------------------------------------------
