@@ -269,6 +269,8 @@ def lies_within(a: GeodesicArea, b: GeodesicArea, metres: float) -> bool:
         if rest.is_empty or _is_beyond(frame, rest, b, metres):
             break
         near = shapely.dwithin(_lines(starts, ends), rest, metres * stretch(reach))
+        if not near.any():
+            break
         starts, ends = starts[near], ends[near]
         capsules = _capsules(frame, rest, (starts, ends), metres - rounding, corners)
         rest = shapely.difference(rest, shapely.union_all(shapely.clip_by_rect(capsules, *_around(rest))))
