@@ -137,7 +137,7 @@ def result_on(mission: ElaboratedMission, name: str, report: Report) -> CheckRes
         report,
         check_line=check_line(mission),
         text=mission.source.text,
-        cautions=cautions_of(mission),
+        cautions=cautions_of(mission, report),
     )
 
 
@@ -157,9 +157,9 @@ def check_line(mission: ElaboratedMission) -> int:
     return next((source.line(section.span.start) for section in tree.each(Check)), 1)
 
 
-def cautions_of(mission: ElaboratedMission) -> tuple[Issue, ...]:
-    """Return the warnings on a mission's text."""
-    said = (diagnostic_json(each, mission.source) for each in mission.warnings)
+def cautions_of(mission: ElaboratedMission, report: Report) -> tuple[Issue, ...]:
+    """Return the warnings on a mission's text that its report does not refute."""
+    said = (diagnostic_json(each, mission.source) for each in mission.warnings_after(report.suspected))
     return tuple(_of_text(each, Level.WARNING) for each in said)
 
 

@@ -84,8 +84,8 @@ class Checked:
     def as_json(self) -> dict[str, Any]:
         """Return the report as plain data."""
         report = report_json(self.name, self.digest, self.report, self.mission.setting.control)
-        source = self.mission.source
-        return report | {"warnings": [diagnostic_json(each, source) for each in self.mission.warnings]}
+        source, warnings = self.mission.source, self.mission.warnings_after(self.report.suspected)
+        return report | {"warnings": [diagnostic_json(each, source) for each in warnings]}
 
 
 @dataclass(frozen=True, slots=True)
@@ -153,6 +153,7 @@ def check_mission(
                 clock=how.clock,
                 times=how.times,
                 ways=how.ways or (how.regions and unlisted_ways(mission, how) is None),
+                suspected=mission.suspicions,
             )
         if how.times:
             _check_times(name, mission, report)

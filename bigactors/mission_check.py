@@ -26,7 +26,7 @@ def check(
         properties: The properties to decide; by default the mission's.
         limits: The bounds of the exploration.
         options: Those of `checker.check`: `report`, `notes`, `engine`, `violations`, `reduce`, `keeping`, `cluster`,
-            `threads`, `clock`, `times` and `ways`.
+            `threads`, `clock`, `times`, `ways` and `suspected`.
 
     Raises:
         MissionError: The file cannot be read or has mistakes; the error has all of them.

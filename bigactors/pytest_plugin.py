@@ -132,7 +132,13 @@ class MissionFile(pytest.File):
             for item in self.session.items
             if isinstance(item, PropertyItem) and item.parent is self
         ]
-        return check(self.mission, selected, _limits(self.config), engine=engine and Engine(engine))
+        return check(
+            self.mission,
+            selected,
+            _limits(self.config),
+            engine=engine and Engine(engine),
+            suspected=self.mission.suspicions,
+        )
 
     @cached_property
     def result(self) -> CheckResult:

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Protocol, assert_never
+from typing import TYPE_CHECKING, NamedTuple, Protocol, assert_never
 
 from checker.engines.capabilities import CombinationError, engines, features, require
 from checker.engines.choose import explore_by
@@ -32,7 +32,7 @@ from checker.reduction.refusals import Reduction, RefusedError
 from checker.traces import Trace, trace_of, trace_to
 from checker.verdicts import Outcome, Report, Verdict, Verdicts, Violation
 from semantics.properties.kinds import PropertyKind
-from semantics.properties.property import Property, instantiated_region_atoms, watching
+from semantics.properties.property import Property, asks_of_regions, instantiated_region_atoms, watching
 from semantics.races.monitor import monitored
 from semantics.state.configuration import Configuration
 from semantics.state.setting import Control
@@ -41,9 +41,11 @@ if TYPE_CHECKING:
     from checker.properties.corridors import Corridors
     from checker.properties.deadlines import Deadlines
     from checker.properties.schedule import Schedule
+    from checker.properties.suspected_ways import SuspectedWays
     from checker.properties.temporal.decide import TemporalDecider
     from checker.reduction.reducer import Reduced
     from semantics.properties.propositions import Proposition
+    from semantics.regions.suspicions import SuspectedWay, Suspicion
 
 BY_LOOKING: dict[PropertyKind, Callable[[int], Inspection]] = {
     PropertyKind.LOCAL_CONSISTENCY: LocalConsistency,
@@ -94,6 +96,7 @@ def check(  # noqa: PLR0913 - independent options
     clock: ZoneClock = ZoneClock.LOCAL,
     times: bool = False,
     ways: bool = False,
+    suspected: Iterable[Suspicion] = (),
 ) -> Report:
     """Explore the reachable configurations and decide the properties.
 
@@ -115,6 +118,7 @@ def check(  # noqa: PLR0913 - independent options
         clock: The clock of a search through zones, for a mission with `timing`.
         times: Whether the report says when flights may begin and end, for a mission with `timing`.
         ways: Whether the report lists the ways of all flights, with their lengths and distances.
+        suspected: What the text suggests about ways; the report says what the exploration found, unless it was reduced.
 
     Raises:
         CombinationError: Two options do not work together, or one with the mission (`checker.engines.capabilities`).
@@ -123,11 +127,14 @@ def check(  # noqa: PLR0913 - independent options
         TypeError: A configuration is given without properties.
     """
     initial, asked, notes = _asked(start, properties, notes)
-    initial, limits = watching(initial, asked, ways=ways), limits or Limits()
-    notes = (*notes, *assumed_ways(initial.setting))
     formulas, reductions = _formulas(asked), tuple(reduce)
     timing = initial.setting.timing is not None
     atomic = initial.setting.control is Control.ATOMIC
+    suspicions = () if atomic or reductions else tuple(suspected)
+    if ways or asks_of_regions(asked):
+        initial = watching(initial, asked, ways=True)
+        notes = (*notes, *assumed_ways(initial.setting))
+    initial, limits = watching(initial, asked, ways=bool(suspicions)), limits or Limits()
     wanted = features(
         limits, keeping, reductions, cluster=cluster, threads=threads, timing=timing, ways=ways, atomic=atomic
     )
@@ -141,7 +148,7 @@ def check(  # noqa: PLR0913 - independent options
 
     def run(engine: Engine, limits: Limits) -> Report:
         exploration = replace(options, engine=engine, limits=limits)
-        return _Check(initial, asked, exploration, violations, times=times, ways=ways).run(notes)
+        return _Check(initial, asked, exploration, violations, _Extras(times, ways, suspicions)).run(notes)
 
     impatient = limits.seconds is None or limits.seconds > PATIENCE
     if len(able) == 1 or not impatient:
@@ -183,6 +190,12 @@ def _reduced(
     return Reduced(initial, reductions, formulas, runs)
 
 
+def _suspected(suspicions: Iterable[Suspicion]) -> SuspectedWays:
+    from checker.properties.suspected_ways import SuspectedWays  # noqa: PLC0415 - geometry takes its time to load
+
+    return SuspectedWays(suspicions)
+
+
 def reductions_of(start: Checkable) -> tuple[Reduction, ...]:
     """Return the reductions that are sound for a mission; they can be combined."""
     timing = start.initial.setting.timing is not None
@@ -198,6 +211,14 @@ def reductions_of(start: Checkable) -> tuple[Reduction, ...]:
     return tuple(sound)
 
 
+class _Extras(NamedTuple):
+    """What a report has besides verdicts."""
+
+    times: bool
+    ways: bool
+    suspicions: tuple[Suspicion, ...]
+
+
 class _Check:
     def __init__(
         self,
@@ -205,13 +226,12 @@ class _Check:
         properties: tuple[Property, ...],
         options: Options,
         most: int,
-        *,
-        times: bool = False,
-        ways: bool = False,
+        extras: _Extras,
     ) -> None:
         self.initial = initial
-        self.times = times
-        self.flown = FlownStances(initial, instantiated_region_atoms(properties)) if ways else None
+        self.times = extras.times
+        self.suspected = _suspected(extras.suspicions) if extras.suspicions else None
+        self.flown = FlownStances(initial, instantiated_region_atoms(properties)) if extras.ways else None
         self.properties = properties
         self.options = options
         self.most = most
@@ -240,8 +260,8 @@ class _Check:
     def run(self, notes: tuple[str, ...]) -> Report:
         """Explore, and decide the properties."""
         races = (self.races,) if self.searching else ()
-        flown = () if self.flown is None else (self.flown,)
-        everything = (self.visited, *self.inspections.values(), *races, *self.formulas.values(), *flown)
+        stances = (each for each in (self.flown, self.suspected) if each is not None)
+        everything = (self.visited, *self.inspections.values(), *races, *self.formulas.values(), *stances)
         options = self.options
         self.found = explore_by(self.initial, everything, replace(options, edges=bool(self.temporal)))
         if self.found.times is not None and self.initial.setting.timing is not None:
@@ -257,6 +277,7 @@ class _Check:
             verdicts = Verdicts(map(self.decide, self.properties))
             schedule = self.schedule()
             corridors = self.corridors()
+            suspected = self.suspected_ways()
         return Report(
             verdicts=verdicts,
             configurations=self.found.size,
@@ -273,6 +294,7 @@ class _Check:
             allowed=self.found.allowed,
             schedule=schedule,
             corridors=corridors,
+            suspected=suspected,
             flights=self.deadlines.longest_flights() if self.deadlines else (),
         )
 
@@ -298,6 +320,13 @@ class _Check:
 
         assert self.initial.setting.regions is not None
         return measured(self.initial.setting.regions, self.flown, complete=self.found.complete)
+
+    def suspected_ways(self) -> Mapping[Suspicion, SuspectedWay | None]:
+        """Return what the exploration found of each suspicion."""
+        facts = self.initial.setting.regions
+        if self.suspected is None or facts is None:
+            return {}
+        return self.suspected.decided(facts, complete=self.found.complete)
 
     def search(self) -> Exploration | None:
         """Search for stale observations with the monitor's memory, in the remaining time.

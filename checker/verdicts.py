@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from checker.properties.corridors import Corridors
     from checker.properties.critical_path import Leg
     from checker.properties.schedule import Schedule
+    from semantics.regions.suspicions import SuspectedWay, Suspicion
 
 
 class Outcome(Enum):
@@ -146,6 +147,8 @@ class Report:
         schedule: The earliest and latest dates of its flights, if requested.
         corridors: The ways of its flights with their lengths and distances, if requested.
         flights: The longest flight of each bigActor in seconds, where it is bounded, sorted by name.
+        suspected: For each suspicion about ways a way that confirms it, None if there is none; undecided ones are left
+            out.
     """
 
     verdicts: Verdicts
@@ -162,6 +165,7 @@ class Report:
     schedule: Schedule | None = None
     corridors: Corridors | None = None
     flights: tuple[tuple[Name, float], ...] = ()
+    suspected: Mapping[Suspicion, SuspectedWay | None] = field(default_factory=dict)
 
     def __repr__(self) -> str:
         counts = Counter(verdict.outcome.value for verdict in self.verdicts)

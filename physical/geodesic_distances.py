@@ -7,6 +7,7 @@ of the other. The gnomonic frame chooses the candidates, and geodesics measure t
 
 from __future__ import annotations
 
+import math
 from functools import lru_cache
 from typing import Any, Final, NamedTuple
 
@@ -23,6 +24,7 @@ from physical.gnomonic import (
     beside,
     check_reach,
     frame_of,
+    slack,
     stretch,
 )
 from physical.shape import MEMO
@@ -236,77 +238,86 @@ def _vectors(positions: Positions) -> Any:
     return np.column_stack([np.cos(north) * np.cos(east), np.cos(north) * np.sin(east), np.sin(north)])
 
 
-MOST_CELLS: Final = 20_000
-"""More undecided triangles are in doubt."""
+# --- areas around an area -----------------------------------------------------------------------------
 
-SMALLEST_CELL: Final = 0.2
-"""Metres: a smaller cell is in doubt."""
+ROUNDS: Final = (16, 64, 256, 1_024, 1_024)
+"""For each round the corners on the arc towards the rest, coarse to fine."""
 
-CHORD_ROOM: Final = 0.05
-"""Metres by which a line between two nearest points may leave the area."""
+ARC: Final = 40.0
+"""The degrees of that arc."""
+
+ROUNDING: Final = 0.3
+"""The share of the doubt by which a capsule is too small."""
 
 
 @lru_cache(maxsize=MEMO)
 def lies_within(a: GeodesicArea, b: GeodesicArea, metres: float) -> bool:
     """Whether every point of one area is surely within some metres of another; false in doubt.
 
-    The area is cut into triangles. If the nearest points of a triangle's corners span a triangle that lies in the other
-    area, then no point of it is farther than its farthest corner, but for the earth's bending. Else it is cut again.
+    Capsules around the edges of the other area are cut off the first one. Few edges are as far from the rest as the
+    metres, so the next capsules can have more corners.
     """
-    corners = np.array(shapely.get_coordinates(a.shape))
-    if (feet_on(corners, b).metres > metres).any():
+    if (feet_on(shapely.get_coordinates(a.shape), b).metres > metres).any():
         return False
-    frame, _ = shared_frame(a.disc, b.disc)
-    whole, target = projected(a, frame), projected(b, frame)
-    room = target.buffer(CHORD_ROOM)
-    shapely.prepare(room)
-    cells = _triangles(whole)
-    while len(cells):
-        corners, of_cell = np.unique(cells.reshape(-1, 2), axis=0, return_inverse=True)
-        found = feet_on(frame.positions(corners), b)
-        far = corners[found.metres > metres]
-        if shapely.intersects_xy(whole, far[:, 0], far[:, 1]).any():
-            return False
-        of_cell = of_cell.ravel()
-        feet = Feet(found.metres[of_cell].reshape(-1, 3), frame.plane(found.feet)[of_cell].reshape(-1, 3, 2))
-        cells = cells[~_are_reached(cells, feet, room, metres)]
-        if len(cells) > MOST_CELLS or (_sides(cells) < SMALLEST_CELL).any():
-            return False
-        cells = _quartered(cells)
-        cells = cells[shapely.intersects(_drawn(cells), whole)]
-    return True
+    if "Point" in (a.shape.geom_type, b.shape.geom_type):
+        return True  # no point is farther than the corners
+    frame, reach = shared_frame(a.disc, b.disc)
+    rounding = ROUNDING * slack(reach)
+    rest = shapely.difference(projected(a, frame), projected(b, frame))
+    starts, ends = _pieces(projected(b, frame), metres, rounding)
+    for corners in ROUNDS:
+        if rest.is_empty or _is_beyond(frame, rest, b, metres):
+            break
+        near = shapely.dwithin(_lines(starts, ends), rest, metres * stretch(reach))
+        if not near.any():
+            break
+        starts, ends = starts[near], ends[near]
+        capsules = _capsules(frame, rest, (starts, ends), metres - rounding, corners)
+        rest = shapely.difference(rest, shapely.union_all(shapely.clip_by_rect(capsules, *_around(rest))))
+    return bool(rest.is_empty)
 
 
-def _triangles(shape: shapely.Geometry) -> Any:
-    """Return triangles that cover a shape, as arrays of three corners; lines and points are flat ones."""
-    if shape.geom_type == "Polygon":
-        drawn = shapely.get_parts(shapely.delaunay_triangles(shape))
-        return np.array([shapely.get_coordinates(each)[:3] for each in drawn])
-    starts, ends = _edges(shape)
-    return np.stack([starts, ends, ends], axis=1)
+def _lines(starts: Any, ends: Any) -> Any:
+    return shapely.linestrings(np.stack([starts, ends], axis=1))
 
 
-def _drawn(cells: Any) -> Any:
-    """Return cells as shapes: the flat ones as lines or points."""
-    return shapely.convex_hull(shapely.linestrings(cells))
+def _pieces(shape: shapely.Geometry, metres: float, rounding: float) -> tuple[Any, Any]:
+    """Return the edges of a shape, cut so short that a line beside one, at a distance, hardly bends away from it."""
+    longest = SPHERE * math.sqrt(4 * rounding / max(metres, 1.0))
+    return _edges(shapely.segmentize(shape, longest))
 
 
-def _are_reached(cells: Any, feet: Feet, room: shapely.Geometry, metres: float) -> Any:
-    """Return which cells have no point farther than `metres` from an area, by the feet of their corners on it."""
-    most, sides = feet.metres.max(axis=1), _sides(cells)
-    bent = CHORD_ROOM + 1.1 * most * (sides / SPHERE) ** 2 / 6
-    linked = shapely.contains(room, _drawn(feet.feet)) & (most + bent <= metres)
-    return linked | (feet.metres.min(axis=1) + sides <= metres)
+def _is_beyond(frame: GnomonicFrame, rest: shapely.Geometry, b: GeodesicArea, metres: float) -> bool:
+    """Whether a point of some parts is farther from an area than some metres, as far as their middles show."""
+    middles = shapely.get_coordinates(shapely.point_on_surface(shapely.get_parts(rest)))
+    return bool((feet_on(frame.positions(middles), b).metres > metres).any())
 
 
-def _sides(cells: Any) -> Any:
-    """Return the longest side of each cell in the frame, which is at least its length on the earth."""
-    return np.max([np.hypot(*(cells[:, i] - cells[:, i - 1]).T) for i in range(3)], axis=0)
+def _around(rest: shapely.Geometry) -> tuple[float, float, float, float]:
+    """Return a rectangle around a shape."""
+    west, south, east, north = rest.bounds
+    return west - 1.0, south - 1.0, east + 1.0, north + 1.0
 
 
-def _quartered(cells: Any) -> Any:
-    a, b, c = cells[:, 0], cells[:, 1], cells[:, 2]
-    ab, bc, ca = (a + b) / 2, (b + c) / 2, (c + a) / 2
-    return np.concatenate(
-        [np.stack(each, axis=1) for each in ((a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca))]
-    )
+def _capsules(
+    frame: GnomonicFrame, rest: shapely.Geometry, edges: tuple[Any, Any], metres: float, corners: int
+) -> Any:
+    """Return for each edge an area without a point farther than some metres from it, with round ends."""
+    around = np.linspace(0.0, 360.0, ROUNDS[0], endpoint=False)
+    offsets = np.concatenate([around, np.linspace(-ARC / 2, ARC / 2, corners)])
+    rims = [_rims(frame, spots, _azimuths(spots, rest)[:, None] + offsets, metres) for spots in edges]
+    return shapely.convex_hull(shapely.multipoints(np.concatenate(rims, axis=1)))
+
+
+def _azimuths(spots: Any, rest: shapely.Geometry) -> Any:
+    """Return the approximate azimuth in degrees of the nearest point of a shape, for each spot of a frame."""
+    ahead = shapely.get_coordinates(shapely.shortest_line(shapely.points(spots), rest))[1::2] - spots
+    return np.degrees(np.arctan2(ahead[:, 0], ahead[:, 1]))
+
+
+def _rims(frame: GnomonicFrame, spots: Any, azimuths: Any, metres: float) -> Any:
+    """Return for each spot the points of the frame that are some metres from it."""
+    centres = np.repeat(frame.positions(spots), azimuths.shape[1], axis=0)
+    far = np.full(len(centres), max(metres, 0.0))
+    easts, norths, _ = geod().fwd(centres[:, 0], centres[:, 1], azimuths.ravel(), far)
+    return frame.plane(np.column_stack([easts, norths])).reshape(*azimuths.shape, 2)

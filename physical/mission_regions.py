@@ -52,6 +52,10 @@ class Ways:
         """Whether an entity has one geometry in all configurations in which it is present."""
         return self._of.is_fixed(entity)
 
+    def may_arrive_at(self, entity: str, place: str, at: Geometry) -> bool:
+        """Whether a flight of an entity to a place may have ended at a placement; true in doubt."""
+        return place in self._of.motion(entity).targets and self._of.may_arrive_at(entity, place, at)
+
     def check(self, entity: str) -> None:
         """Raise RegionError if some region of an entity may be too large, or may cover a pole."""
         whole = self._of.whole(entity)

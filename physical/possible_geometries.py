@@ -195,17 +195,17 @@ class PossibleGeometries:
 
     def may_fly_to(self, entity: str, at: Geometry) -> bool:
         """Whether P may have an entity at a placement after a flight; true in doubt."""
+        return any(self.may_arrive_at(entity, place, at) for place in sorted(self.motion(entity).targets))
+
+    def may_arrive_at(self, entity: str, place: str, at: Geometry) -> bool:
+        """Whether P may have an entity at a placement after a flight to a place; true in doubt."""
         middle = centroid(at)
-        for place in sorted(self.motion(entity).targets):
-            if self.is_steady(place) and not contains(self.geometry(place), middle):
-                continue  # most places
-            arrivals = self.arrivals(entity, place)
-            if arrivals is None:
-                if self.is_near(place, middle):
-                    return True
-            elif any(centroid(each) is middle for each in arrivals):
-                return True
-        return False
+        if self.is_steady(place) and not contains(self.geometry(place), middle):
+            return False  # most places
+        arrivals = self.arrivals(entity, place)
+        if arrivals is None:
+            return self.is_near(place, middle)
+        return any(centroid(each) is middle for each in arrivals)
 
     def bringers(self, entity: str, at: Geometry) -> tuple[str, ...]:
         """Return the entities that may have carried an entity to a placement and put it down there, sorted."""

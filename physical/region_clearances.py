@@ -6,11 +6,15 @@ import math
 from enum import Enum
 from typing import Final, NamedTuple
 
-from physical.geodesic_areas import area_of, disc_of
-from physical.geodesic_distances import nearest_line
+import shapely
+
+from physical.frame import rounded
+from physical.geodesic_areas import GeodesicArea, area_of, disc_of
+from physical.geodesic_distances import feet_on, nearest_line
 from physical.gnomonic import around, slack
 from physical.region_relations import nearest, possibly_in, surely_in, within
 from physical.regions import Located, RegionPart
+from physical.shape import Geometry, intern
 
 FINENESS: Final = 1.0
 """The accuracy in metres of a reach."""
@@ -56,6 +60,46 @@ def _depth(part: RegionPart, outer: RegionPart) -> float:
     """Return the least distance of a part inside a place from its border."""
     metres = nearest_line(area_of(part), area_of(outer).border).metres
     return max(0.0, metres - part.margin - slack(around(disc_of(part), disc_of(outer)).radius))
+
+
+class Outermost(NamedTuple):
+    """A point of a region, and how far the region reaches beyond a place there.
+
+    Attributes:
+        metres: The metres, with the region's margin.
+        point: The point, without the margin.
+    """
+
+    metres: float
+    point: Geometry
+
+
+def outermost(u: Located, place: Located) -> Outermost | None:
+    """Return where a region reaches farthest beyond a place; None if it does not, or if the place may move.
+
+    Raises:
+        RegionError: The two are too far from each other.
+    """
+    if not place.region.certain:
+        return None
+    outer = area_of(place.region.parts[0])
+    found = [_outermost(part, outer) for part in u.region.parts]
+    return max((each for each in found if each.metres > 0.0), key=lambda each: each.metres, default=None)
+
+
+def _outermost(part: RegionPart, outer: GeodesicArea) -> Outermost:
+    area = area_of(part)
+    corners = shapely.get_coordinates(area.shape)
+    metres = feet_on(corners, outer).metres
+    at = int(metres.argmax())
+    if metres[at] > 0.0:
+        return Outermost(float(metres[at]) + part.margin, _point(*corners[at]))
+    line = nearest_line(area, outer.border)
+    return Outermost(part.margin - line.metres, _point(*line.first))
+
+
+def _point(east: float, north: float) -> Geometry:
+    return intern((rounded(north, east),))
 
 
 def reach(u: Located, v: Located) -> float | None:

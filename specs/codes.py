@@ -598,7 +598,7 @@ class Code(Enum):
         "LS709",
         "flight that may cross a forbidden place",
         """An invariant keeps a vehicle, or what it may carry, out of a place, and the straight way of one of its
-        flights may lead through it.
+        flights may lead through it. `check` warns only if a configuration is reached where it may be there.
         `actually` does not cover a vehicle in transit: ask for `not possibly uav0 in place0`. Or lead the flight around
         by VIA, or in several moves.""",
     )
@@ -614,7 +614,8 @@ class Code(Enum):
         "LS711",
         "two vehicles that may be sent to one point",
         """In a mission with properties about ways, two vehicles may be sent to one place, and so to one point. Neither
-        their altitudes nor a property part them: `uav0 at least 50 m from uav1`.""",
+        their altitudes nor a property part them: `uav0 at least 50 m from uav1`. `check` warns only if both may be
+        under way there, or there, at one time.""",
     )
 
     # --- LS8: timing

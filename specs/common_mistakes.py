@@ -48,11 +48,7 @@ _GEOMETRIES: Final = frozenset({"point", "box", "polygon", "circle"})
 _QUOTES: Final = "'`\u2018\u2019\u201c\u201d\u201e\u00ab\u00bb"
 _ANGLE_MARKS: Final = tuple("°º'′’\"″”")
 _COMPARISONS: Final = frozenset({"==", "!=", "<", "<=", ">", ">=", "in", "not"})
-_UNITS: Final = (
-    (("m", "km"), "write 400 m or 1.5 km"),
-    (tuple(reversed(UNITS)), "write 90 s, 10 min or 1.5 h"),
-    (tuple(METRES_PER_SECOND), "write 18 m/s, 65 km/h or 35 kn"),
-)
+_UNITS: Final = (("m", "km"), tuple(reversed(UNITS)), tuple(METRES_PER_SECOND))
 _HEADER: Final = re.compile(r"^\s*mission\b", re.MULTILINE)
 _DROP: Final = re.compile(r"(\w+(?:[:.\-]\w+)*)\s+(drop\w*|loses?|lost|fails?)(?!\w)")
 _LINKS: Final = frozenset({"drops"})
@@ -391,12 +387,17 @@ def chained_comparison(at: ParsePoint) -> Diagnostic | None:
 
 def missing_unit(at: ParsePoint) -> Diagnostic | None:
     """`radius 400`, or `after 10`."""
-    for units, hint in _UNITS:
+    for units in _UNITS:
         if set(units) <= at.accepted:
-            listed = f"{', '.join(map(repr, units[:-1]))} or '{units[-1]}'"
-            message = f"expected {listed} behind {at.before.shown}"
+            message = f"expected {_either(map(repr, units))} behind {at.before.shown}"
+            hint = f"write {_either(f'{at.before.text} {unit}' for unit in units)}"
             return Diagnostic(Code.MISSING_UNIT, at.before.span, message, hint)
     return None
+
+
+def _either(words: Iterable[str]) -> str:
+    *first, last = words
+    return f"{', '.join(first)} or {last}"
 
 
 _STEPS: Final = {

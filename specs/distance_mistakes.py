@@ -22,6 +22,13 @@ _METRES: Final[Mapping[str, float]] = {
 """The metres of the units that the language does not have."""
 
 
+_MODALS: Final[Mapping[str, str]] = {
+    **dict.fromkeys(("maybe", "perhaps", "possible", "might", "may", "could"), "possibly"),
+    **dict.fromkeys(("definitely", "certainly", "certain", "sure", "must", "necessarily"), "surely"),
+}
+"""Words for the two claims about regions that the language does not have."""
+
+
 def foreign_length(at: ParsePoint) -> Diagnostic | None:
     """`at least 2 NM from uav1`, `altitude 400 ft`."""
     if not {"m", "km"} <= at.accepted or at.found.text not in _METRES or not at.before.is_number:
@@ -84,6 +91,24 @@ def negated_place(at: ParsePoint) -> Diagnostic | None:
     return at.mistake(Code.UNEXPECTED, "'not' stands before the whole claim", hint)
 
 
+def negated_distance(at: ParsePoint) -> Diagnostic | None:
+    """`uav0 not within 2 km of west0`, `uav0 not at least 50 m from uav1`."""
+    compared = at.following.text in ("within", "at") and {"within", "at"} <= at.accepted
+    if at.found.text != "not" or not compared or at.in_expression:
+        return None
+    hint = f"write not {at.before.text} {at.following.text} ..."
+    return at.mistake(Code.UNEXPECTED, "'not' stands before the whole claim", hint)
+
+
+def other_modal(at: ParsePoint) -> Diagnostic | None:
+    """`maybe uav0 in west0`, `definitely uav0 in west0`."""
+    meant = _MODALS.get(at.before.text)
+    if meant is None or not at.found.is_name or not {"directly", "linked"} <= at.accepted:
+        return None
+    message = f"'{at.before.text}' is not a word of the language here"
+    return Diagnostic(Code.MISSPELT_KEYWORD, at.before.span, message, f"write {meant} {at.found.text} in ...")
+
+
 def late_deadline(at: ParsePoint) -> Diagnostic | None:
     """`invariant "r": within 5 min uav0 in east0`: read as the claim of an entity `within`."""
     if at.before.text != "within" or not at.found.is_number or not {"directly", "linked"} <= at.accepted:
@@ -108,5 +133,7 @@ DISTANCE_MISTAKES: Final[tuple[Callable[[ParsePoint], Diagnostic | None], ...]] 
     claim_by_at,
     spare_away,
     negated_place,
+    negated_distance,
+    other_modal,
     late_deadline,
 )

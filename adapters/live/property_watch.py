@@ -16,7 +16,7 @@ from physical import Geometry, Located, PhysicalError, centroid, nearest, possib
 from physical.geodesic_areas import area_of, disc_of
 from physical.geodesic_distances import greatest_distance_of
 from physical.gnomonic import Disc, around
-from physical.region_relations import surely_in
+from physical.region_clearances import outermost
 from semantics.properties.property import Property
 from semantics.properties.propositions import And, Atom, Not, Or, Proposition, atoms_of, holds
 from semantics.properties.region_atoms import (
@@ -267,7 +267,11 @@ def figure(atom: RegionAtom, u: Located, v: Located, *, holds: bool) -> Figure:
         case SurelyIn(one, place):
             if holds:
                 return Figure(f"{one} is surely in {place}")
-            return Figure(f"{one} may be outside {place}", _outside(u, v))
+            outside = outermost(u, v)
+            if outside is None:
+                return Figure(f"{one} may be outside {place}")
+            words = f"{one} may be up to {math.ceil(outside.metres)} m outside {place}"
+            return Figure(words, (_position(outside.point),))
         case WithinRangeOf(one, other, distance):
             if not u.region or not v.region:
                 return Figure(f"{one if not u.region else other} is absent")
@@ -296,16 +300,6 @@ def _apart(atom: ApartFrom, u: Located, v: Located) -> Figure:
     near = "may meet" if found.metres < 1 and not found.gap else f"may come within {int(found.metres)} m of"
     words = f"{one} {near} {other}{beside}; {least}"
     return Figure(words, (_position(found.first), _position(found.second)))
-
-
-def _outside(u: Located, place: Located) -> tuple[Position, ...]:
-    """Return the centre of a part of a region that is not surely in a place."""
-    for part in u.region.parts:
-        alone = Located(u.entity, type(u.region)((part,)))
-        if not surely_in(alone, place):
-            source = part.sources[-1]
-            return (_position(centroid(source)),) if isinstance(source, Geometry) else ()
-    return ()
 
 
 def _middles(u: Located, v: Located) -> tuple[Position, ...]:

@@ -6,8 +6,9 @@ speed it may gain speed, by `STRONGEST`. The region of an entity whose position 
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
+from itertools import pairwise
 from typing import Final
 
 from adapters.live.commanded import Commanded
@@ -19,6 +20,7 @@ from physical import Band, Geometry, Located, PhysicalError, Region, RegionKind,
 from physical.geodesic_areas import disc_of
 from physical.regions import NOWHERE
 from semantics.environment import Vanishes
+from semantics.regions.possible_moves import possible_ways
 from semantics.state.configuration import Configuration
 from semantics.state.physical_model import Carried, Placed
 from semantics.state.signature import Name
@@ -132,17 +134,25 @@ class SeenWorld:
     def _sent_elsewhere(
         self, entity: Name, at: Geometry, margin: float, band: Band | None
     ) -> Iterator[RegionPart]:
-        """Yield the straight way to its destination of a vehicle that another station has sent."""
-        physical = self.c.structure.physical
-        to = physical.going_to(entity)
-        target = physical.position(to) if to else None
-        if (
-            target is not None
-            and entity not in self.commanded.flights
-            and not self.overrides.is_overridden(entity)
-        ):
-            sources = tuple(sorted({at, target.geometry}))
-            yield RegionPart(sources, True, margin, band, RegionKind.LEG, ("", to))
+        """Yield the way of a vehicle that another station has sent: by the VIA of any control that may have done so."""
+        if entity in self.commanded.flights or self.overrides.is_overridden(entity):
+            return
+        to = self.c.structure.physical.going_to(entity)
+        vias = possible_ways(self.c.setting, entity, to) if to else frozenset()
+        if vias is None:
+            everywhere = {at, *(spot for _, spot in self._spots(self.c.setting.kinds))}
+            yield RegionPart(tuple(sorted(everywhere)), True, margin, band, RegionKind.LEG, ("", to))
+            return
+        for stops in (self._spots((*via, to)) for via in sorted(vias)):
+            legs = [(("", at), stop) for stop in stops]  # it may have passed any number of them
+            for (begin, here), (end, there) in (*legs, *pairwise(stops)):
+                sources = tuple(sorted({here, there}))
+                yield RegionPart(sources, True, margin, band, RegionKind.LEG, (begin, end))
+
+    def _spots(self, names: Iterable[Name]) -> list[tuple[Name, Geometry]]:
+        """Return the entities that have a position, each with its geometry."""
+        found = ((name, self.c.structure.physical.position(name)) for name in names)
+        return [(name, at.geometry) for name, at in found if at is not None]
 
 
 def _foot(way: FlownWay, at: Geometry, strays: float) -> Geometry:

@@ -44,7 +44,7 @@ def checked(source: Source, directory: Path, limits: Limits) -> Checked:
     if mission is None:
         raise MissionError(source, diagnosis.mistakes)
     require_bigactor(mission)
-    report = check(mission.initial, mission.properties, limits, notes=mission.notes)
+    report = check(mission, limits=limits, suspected=mission.suspicions)
     return Checked(source.name, mission, digest_of(mission), report, False)
 
 

@@ -7,36 +7,28 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
 from functools import partial
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING
 
-from checker.limits import Bound
-from checker.properties.inspections import InTime
+from checker.properties.stance_questions import Pair, StanceQuestions
 from semantics.properties.region_atoms import RegionAtom, WithinRangeOf, operands
 from semantics.state.configuration import Configuration
 from semantics.state.signature import Name
-from semantics.successors import Expansion
 
 if TYPE_CHECKING:
     from semantics.regions.stances import Stance
 
-Pair = tuple[Name, Name]
 
-
-class FlownStances:
+class FlownStances(StanceQuestions):
     """The stances of entities, and of pairs of which one is in transit.
 
     Attributes:
         vehicles: The entities that a control may move, sorted.
         named: The other entities that properties about regions name, sorted.
         ranged: Those of them from which a property allows a greatest distance.
-        alone: The stances of each vehicle and each named entity.
-        together: The stances of each pair: of two vehicles, or of a vehicle and a named entity.
-        bounds: The bounds at which an engine stopped asking.
     """
 
-    in_time: ClassVar[InTime] = InTime.ENABLED
-
     def __init__(self, initial: Configuration, atoms: Iterable[RegionAtom]) -> None:
+        super().__init__()
         facts = initial.setting.regions
         assert facts is not None
         moved = {name for name, motion in facts.motions.items() if motion.targets}
@@ -45,12 +37,9 @@ class FlownStances:
         self.named = tuple(sorted({name for atom in seen for name in operands(atom)} - moved))
         within = (atom for atom in seen if isinstance(atom, WithinRangeOf))
         self.ranged = frozenset(name for atom in within for name in operands(atom)) - moved
-        self.alone: dict[Name, set[Stance]] = {}
-        self.together: dict[Pair, set[tuple[Stance, Stance]]] = {}
-        self.bounds: list[Bound] = []
 
     def questions(self) -> Iterator[Callable[[Configuration], object]]:
-        """Yield the questions; the answer to each is noted before the next one."""
+        """Yield the questions: the pairs are those of vehicles that were seen in transit before."""
         from semantics.regions.stances import standing, together  # noqa: PLC0415 - geometry takes its time to load
 
         yield from (partial(standing, name) for name in (*self.vehicles, *self.named))
@@ -68,26 +57,3 @@ class FlownStances:
         in_order = tuple(flown)
         for rank, one in enumerate(in_order):
             yield from ((one, other) for other in (*in_order[rank + 1 :], *self.named))
-
-    def note(self, answer: object) -> None:
-        """Note the answer to a question."""
-        from semantics.regions.stances import Stance  # noqa: PLC0415 - geometry takes its time to load
-
-        if isinstance(answer, Stance):
-            self.alone.setdefault(answer.entity, set()).add(answer)
-        elif isinstance(answer, tuple):
-            one, other = answer
-            self.together.setdefault((one.entity, other.entity), set()).add((one, other))
-
-    def __call__(self, _: int, c: Configuration, __: Expansion) -> None:
-        """Note the stances in a configuration."""
-        for question in self.questions():
-            self.note(question(c))
-
-    def add(self, part: FlownStances) -> None:
-        """Add the stances that another worker saw."""
-        for vehicle, stances in part.alone.items():
-            self.alone.setdefault(vehicle, set()).update(stances)
-        for pair, both in part.together.items():
-            self.together.setdefault(pair, set()).update(both)
-        self.bounds += part.bounds

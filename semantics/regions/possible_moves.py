@@ -54,6 +54,25 @@ def _moved(setting: Setting) -> dict[Name, frozenset[Name]]:
     }
 
 
+def possible_ways(setting: Setting, entity: Name, to: Name) -> frozenset[tuple[Name, ...]] | None:
+    """Return the VIAs of all controls of a text that may send an entity to a place; None for any."""
+    every = tuple(sorted(setting.kinds))
+    found = _vias(setting).get((entity, to), frozenset())
+    return None if every in found else found
+
+
+@lru_cache(maxsize=8)
+def _vias(setting: Setting) -> dict[tuple[Name, Name], frozenset[tuple[Name, ...]]]:
+    """Return for each entity and place the VIAs of all moves of a text."""
+    flow = ValueFlow(setting)
+    found: dict[tuple[Name, Name], set[tuple[Name, ...]]] = {}
+    for agent in flow.agents:
+        for reaction in dict.fromkeys(_controls(setting, flow, agent)):
+            for move in _moves(setting, agent, reaction):
+                found.setdefault((move.entity, move.place), set()).add(move.via)
+    return {key: frozenset(vias) for key, vias in found.items()}
+
+
 def _requested(c: Configuration, flow: ValueFlow, agent: Name) -> Iterator[Reaction | None]:
     """Yield the reactions that an agent may request; None for any."""
     if agent in c.alpha:

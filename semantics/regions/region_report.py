@@ -1,8 +1,10 @@
 """The words of reports about regions: the figure of an atom, the whereabouts of both entities, and the points."""
 
+import math
 from collections.abc import Iterator
 
-from physical import Geometry, Nearest, centroid, nearest, possible_point
+from physical import Geometry, Located, Nearest, RegionError, centroid, nearest, possible_point
+from physical.region_clearances import outermost
 from semantics.properties.propositions import And, Instances, Not, Or, Proposition, holds
 from semantics.properties.region_atoms import (
     ApartFrom,
@@ -86,8 +88,18 @@ def _points(atom: RegionAtom, c: Configuration) -> str:
         found = _nearest(atom, c)
         return "" if found is None else f"; nearest at {_spot(found.first)} and {_spot(found.second)}"
     one, other = (located(c, name) for name in operands(atom))
+    if isinstance(atom, SurelyIn):
+        return _outside(one, other)
     point = possible_point(one, other) if isinstance(atom, PossiblyIn) else None
     return "" if point is None else f"; such as at {_spot(point)}"
+
+
+def _outside(one: Located, place: Located) -> str:
+    try:
+        found = outermost(one, place)
+    except RegionError:
+        return ""
+    return "" if found is None else f"; up to {math.ceil(found.metres):,} m, at {_spot(found.point)}"
 
 
 def _length(metres: float) -> str:

@@ -85,6 +85,12 @@ def together(one: Name, other: Name, c: Configuration) -> tuple[Stance, Stance] 
     return (first, second) if first.at is not None and second.at is not None else None
 
 
+def present_both(one: Name, other: Name, c: Configuration) -> tuple[Stance, Stance] | None:
+    """Return the stances of two entities, None if one is absent; a question to a configuration."""
+    first, second = standing(one, c), standing(other, c)
+    return None if first is None or second is None else (first, second)
+
+
 class StanceWords:
     """Words for stances: a position is named by the smallest place around it that never moves."""
 

@@ -6,6 +6,7 @@ Only missions with properties about ways are examined: others do not ask how nea
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from functools import partial
 from itertools import combinations
 from typing import Final
 
@@ -14,30 +15,39 @@ from semantics.properties.property import Property, region_atoms
 from semantics.properties.propositions import is_variable
 from semantics.properties.region_atoms import ApartFrom, operands
 from semantics.regions.region_facts import RegionFacts
+from semantics.regions.suspicions import MayMeet, SuspectedWay, Suspicion
 from semantics.state.setting import Setting
 from semantics.state.signature import Name
+from specs import syntax as s
 from specs.codes import Code
+from specs.diagnostics import Diagnostic
 from specs.elaboration.names import Names
+from specs.elaboration.suspicion_warnings import SuspicionWarning
 
-MOST_WARNINGS: Final = 5
-"""The most pairs of vehicles that are named."""
+MOST_PAIRS: Final = 50
+"""The most pairs of vehicles that are examined."""
 
 
-def warn_of_meeting_points(
+def suspected_meeting_points(
     setting: Setting, facts: RegionFacts, properties: Iterable[Property], names: Names
-) -> None:
-    """Warn of vehicles that may be sent to one point, where neither an altitude nor a property parts them."""
+) -> Iterator[SuspicionWarning]:
+    """Yield a warning for each two vehicles sent to one point, where neither an altitude nor a property parts them."""
     parted = [operands(atom) for atom in region_atoms(properties) if isinstance(atom, ApartFrom)]
-    found = 0
     for one, other in combinations(sorted(_vehicles(setting, facts)), 2):
         shared = sorted(facts.motions[one].targets & facts.motions[other].targets)
         if not shared or any(_parts(pair, one, other) for pair in parted):
             continue
-        if _may_be_level(facts.motions[one], facts.motions[other]) and found < MOST_WARNINGS:
-            found += 1
-            message = f"'{one}' and '{other}' may be sent to one point in {shared[0]}, and nothing parts them"
-            hint = f"ask for it: {one} at least 50 m from {other}; or give each its own altitudes"
-            names.findings.warn(Code.ONE_POINT, names.spans["entity", other], message, hint)
+        if _may_be_level(facts.motions[one], facts.motions[other]):
+            suspicion, warning = MayMeet(one, other), partial(_warning, names.spans["entity", other])
+            text = warning(suspicion, SuspectedWay(one, "", shared[0]))
+            yield SuspicionWarning((suspicion,), text, warning)
+
+
+def _warning(where: s.Span, suspicion: Suspicion, way: SuspectedWay) -> Diagnostic:
+    one, other = suspicion.pair
+    message = f"'{one}' and '{other}' may be sent to one point in {way.to}, and nothing parts them"
+    hint = f"ask for it: {one} at least 50 m from {other}; or give each its own altitudes"
+    return Diagnostic(Code.ONE_POINT, where, message, hint)
 
 
 def _vehicles(setting: Setting, facts: RegionFacts) -> Iterator[Name]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
+from itertools import islice
 from pathlib import Path
 from typing import Final
 
@@ -12,6 +13,7 @@ from physical import open_file
 from semantics.environment import Clause, Placing, Says
 from semantics.live_policy import LivePolicy
 from semantics.properties.property import Property, asks_of_regions, watched
+from semantics.regions.suspicions import SuspectedWay, Suspicion
 from semantics.state.brief import cut
 from semantics.state.configuration import Configuration
 from semantics.state.initial import initial
@@ -29,16 +31,17 @@ from specs.elaboration.environment import appearing_channels, elaborate_environm
 from specs.elaboration.independent_diagnostics import independent
 from specs.elaboration.initial_actors import first_actors
 from specs.elaboration.live import elaborate_live
-from specs.elaboration.meeting_points import warn_of_meeting_points
+from specs.elaboration.meeting_points import MOST_PAIRS, suspected_meeting_points
 from specs.elaboration.misses import elaborate_misses
 from specs.elaboration.mission_mistakes import Findings
 from specs.elaboration.mobility import check_nesting, elaborate_mobility, fixed_entities, warn_of_outliers
 from specs.elaboration.names import Names
-from specs.elaboration.overflights import warn_of_overflights
+from specs.elaboration.overflights import suspected_overflights
 from specs.elaboration.realisability import Ground, check_controls
 from specs.elaboration.rules import elaborate_rules
 from specs.elaboration.signature import elaborate_signature
 from specs.elaboration.strays import elaborate_strays
+from specs.elaboration.suspicion_warnings import SuspicionWarning
 from specs.elaboration.timing import TickConversion, elaborate_timing
 from specs.elaboration.type_constraints import check_types
 from specs.elaboration.value_types import Inference
@@ -65,7 +68,8 @@ class ElaboratedMission:
         fixed: Entities whose place neither agents nor the environment can ever change.
         spans: The declaration of each name, by sort (entity, kind, channel, agent, rule, behaviour) and name.
         precautions: The fallbacks and time limits of a live run.
-        warnings: Probable mistakes that are allowed, by position.
+        warned: Probable mistakes that are allowed, whatever an exploration finds.
+        suspected: The warnings that an exploration may refute.
         begin: The function from a setting to the initial configuration, in the world already read.
         empty: Whether its text declares nothing.
     """
@@ -78,7 +82,8 @@ class ElaboratedMission:
     fixed: frozenset[Name]
     spans: Mapping[tuple[str, str], s.Span]
     precautions: LivePolicy
-    warnings: tuple[Diagnostic, ...]
+    warned: tuple[Diagnostic, ...]
+    suspected: tuple[SuspicionWarning, ...]
     begin: Callable[[Setting], Configuration] = field(repr=False)
     empty: bool
 
@@ -92,6 +97,22 @@ class ElaboratedMission:
     def initial(self) -> Configuration:
         """The initial configuration, computed on first use; it has no mistakes left to report."""
         return self.begin(self.setting)
+
+    @property
+    def warnings(self) -> tuple[Diagnostic, ...]:
+        """Probable mistakes that are allowed, by position, as the text alone suggests them."""
+        return self.warnings_after({})
+
+    def warnings_after(self, decided: Mapping[Suspicion, SuspectedWay | None]) -> tuple[Diagnostic, ...]:
+        """Return the warnings that stand after an exploration decided some suspicions."""
+        standing = (each.after(decided) for each in self.suspected)
+        found = (*self.warned, *(each for each in standing if each is not None))
+        return MissionError(self.source, dict.fromkeys(found)).diagnostics
+
+    @property
+    def suspicions(self) -> tuple[Suspicion, ...]:
+        """The suspicions about ways for an exploration to decide."""
+        return tuple(dict.fromkeys(every for each in self.suspected for every in each.suspicions))
 
     def under(self, scheduler: Scheduler, control: Control) -> ElaboratedMission:
         """Return the mission under another scheduler and kind of control; no file is read again."""
@@ -163,13 +184,13 @@ def elaborate(
         begin = partial(begin, beliefs=settled(beliefs, begin(setting)))
         check_forest(mission, begin(setting), names)
     _stop(names.findings)
-    warn_of_overflights(setting, partial(begin, setting), properties, names.findings)
+    suspected = [*suspected_overflights(setting, partial(begin, setting), properties, names.findings)]
     if asks_of_regions(properties):
         from semantics.regions.possible_motions import region_facts  # noqa: PLC0415 - few missions ask for regions
 
         facts = region_facts(begin(setting))
         setting = setting.with_(regions=facts)
-        warn_of_meeting_points(setting, facts, properties, names)
+        suspected += islice(suspected_meeting_points(setting, facts, properties, names), MOST_PAIRS)
     called = mission.name.text if mission.name is not None else Path(source.name).stem
     return ElaboratedMission(
         called,
@@ -181,6 +202,7 @@ def elaborate(
         dict(names.spans),
         precautions,
         names.findings.warnings,
+        tuple(suspected),
         begin,
         not mission.declarations,
     )

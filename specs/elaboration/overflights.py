@@ -3,30 +3,32 @@
 `actually` is about the places that contain vehicles, and a vehicle in transit is in no place that it only crosses. So
 an invariant that excludes a vehicle, or its cargo, from a place holds even if its path leads through. Unless another
 invariant asks for the path (`not possibly u in p`), this module warns if the place meets the hull of two successive
-points of a possible flight.
+points of a possible flight. An exploration then confirms or refutes it.
 """
 
 from collections.abc import Callable, Iterable, Iterator
+from functools import partial
 from itertools import islice, pairwise, product
 from typing import TypeVar
 
 from physical import Geometry
 from physical.extents import extent, least_distance, span
-from semantics.analysis.traversal import reachable
-from semantics.behaviours.statements import ControlBy
 from semantics.environment import Appears, Drifts
 from semantics.properties.kinds import PropertyKind
 from semantics.properties.property import Property
 from semantics.properties.propositions import And, Inside, Not, Or, Proposition
 from semantics.properties.region_atoms import PossiblyIn
-from semantics.races.relevance import hosts_of, requested
+from semantics.regions.possible_moves import possible_moves
+from semantics.regions.suspicions import MayCross, SuspectedWay, Suspicion
 from semantics.state.configuration import Configuration
 from semantics.state.physical_model import Carried
-from semantics.state.setting import Setting
+from semantics.state.setting import Control, Setting
 from semantics.state.signature import REGION, Name
 from specs import syntax as s
 from specs.codes import Code
+from specs.diagnostics import Diagnostic
 from specs.elaboration.mission_mistakes import Findings
+from specs.elaboration.suspicion_warnings import SuspicionWarning
 
 A = TypeVar("A", Inside, PossiblyIn)
 
@@ -36,33 +38,49 @@ Leg = tuple[Name, tuple[Name, ...]]
 MOST_PARTS = 2_000
 """The most operands of a quantifier that are examined."""
 
+MOST_LEGS = 5_000
+"""The most flights that are examined."""
+
 AROUND = "lead it around: MOVE_HOST_TO place VIA gate0, gate1"
 
 
-def warn_of_overflights(
+def suspected_overflights(
     setting: Setting, begin: Callable[[], Configuration], properties: Iterable[Property], findings: Findings
-) -> None:
-    """Warn once of each invariant that excludes a vehicle from a place that its flights may cross."""
+) -> Iterator[SuspicionWarning]:
+    """Yield a warning for each invariant that excludes vehicles from places that their flights may cross."""
     asked = tuple(properties)
     watched = {(atom.entity, atom.place) for each in asked for atom in _denied_of(each, PossiblyIn)}
-    forbidden = [
-        (each, *kept) for each in asked for kept in _kept_out(setting, each) if kept[:2] not in watched
-    ]
-    if not forbidden:
+    kept_out = {
+        each: [kept for kept in _kept_out(setting, each) if kept[:2] not in watched] for each in asked
+    }
+    if setting.control is Control.ATOMIC or not any(kept_out.values()):
         return
     c = begin()
-    legs = frozenset(_legs(c))
+    legs = frozenset((move.entity, (*move.via, move.place)) for move in islice(possible_moves(c), MOST_LEGS))
     flights = [leg for leg in sorted(legs) if setting.signature[setting.kind(leg[0])].driven]
-    for invariant, entity, place, directly in forbidden:
-        moving = frozenset({entity}) if directly else _carriers(c, legs, entity)
-        ways = (_crossing(c, leg, legs, place) for leg in flights if leg[0] in moving)
-        found = next((way for way in ways if way is not None), None)
-        if found is not None:
-            vehicle, begins, ends = found
-            aboard = "" if vehicle == entity else f", aboard {vehicle},"
-            message = f"{entity}{aboard} may cross {place} on its way from {begins} to {ends}"
-            hint = f"'actually' is about its place, not its way; ask for its way: not possibly {entity} in {place}"
-            findings.warn(Code.MAY_CROSS, _line(findings, invariant.line), message, f"{hint}; {AROUND}")
+    for invariant, forbidden in kept_out.items():
+        suspects: list[MayCross] = []
+        first: tuple[MayCross, SuspectedWay] | None = None
+        for entity, place, directly in forbidden:
+            moving = frozenset({entity}) if directly else _carriers(c, legs, entity)
+            carrying = [leg for leg in flights if leg[0] in moving]
+            if carrying:
+                suspects.append(MayCross(entity, place))
+            if first is None:
+                ways = filter(None, (_crossing(c, leg, legs, place) for leg in carrying))
+                first = next(((suspects[-1], way) for way in ways), None)
+        if first is not None:
+            warning = partial(_warning, _line(findings, invariant.line))
+            yield SuspicionWarning(tuple(suspects), warning(*first), warning)
+
+
+def _warning(where: s.Span, suspicion: Suspicion, way: SuspectedWay) -> Diagnostic:
+    entity, place = suspicion.pair
+    aboard = "" if way.vehicle == entity else f", aboard {way.vehicle},"
+    whereabouts = f"on its way from {way.begins} to {way.to}" if way.begins else f"while it is in {way.to}"
+    hint = f"'actually' is about its place, not its way; ask for its way: not possibly {entity} in {place}"
+    message = f"{entity}{aboard} may cross {place} {whereabouts}"
+    return Diagnostic(Code.MAY_CROSS, where, message, f"{hint}; {AROUND}")
 
 
 def _line(findings: Findings, number: int) -> s.Span:
@@ -117,44 +135,26 @@ def _denied(formula: Proposition, *, negated: bool) -> Iterator[Inside | Possibl
                 yield from _denied(part, negated=negated)
 
 
-def _legs(c: Configuration) -> Iterator[Leg]:
-    """Yield all flights that some bigActor may request."""
-    program = c.setting.program
-    for agent in c.alpha.names():
-        for number in sorted(reachable(program, c.alpha.code(agent))):
-            statement = program.statements[number]
-            if isinstance(statement, ControlBy):
-                for reaction in requested(c.setting, statement, hosts_of(c, agent)) or ():
-                    for node, place in reaction.moves:
-                        if isinstance(node, str) and isinstance(place, str):
-                            yield node, (*reaction.via, place)
-
-
 def _takes(c: Configuration, holder: Name, entity: Name) -> bool:
     return holder in c.setting.kinds and c.setting.carries(holder, entity)
 
 
-def _crossing(c: Configuration, leg: Leg, legs: Iterable[Leg], place: Name) -> tuple[Name, Name, Name] | None:
-    """Return the vehicle and the ends of a part of a flight that may cross a place; None if there is none."""
+def _crossing(c: Configuration, leg: Leg, legs: Iterable[Leg], place: Name) -> SuspectedWay | None:
+    """Return the part of a flight that may cross a place; None if there is none."""
     vehicle, stops = leg
     begins = [vehicle, *sorted({each[1][-1] for each in legs if each[0] == vehicle} - {stops[-1]})]
     ways = [(begin, stops[0]) for begin in begins] + list(pairwise(stops))
     shapes = _shapes(c, place)
     for one, other in ways:
         if place not in (one, other) and _meets(_shapes(c, one), _shapes(c, other), shapes):
-            return vehicle, ("its start" if one == vehicle else one), other
+            return SuspectedWay(vehicle, "its start" if one == vehicle else one, other)
     return None
 
 
 def _meets(begins: list[Geometry], ends: list[Geometry], places: list[Geometry]) -> bool:
-    """Whether some path meets a place, and neither of its ends meets that place."""
-    for begin, end, place in product(begins, ends, places):
-        there = extent(place)
-        if any(least_distance(extent(each), there) == 0 for each in (begin, end)):
-            continue  # the invariant itself covers it
-        if least_distance(span([extent(begin), extent(end)]), there) == 0:
-            return True
-    return False
+    """Whether some path meets a place."""
+    paths = (span([extent(begin), extent(end)]) for begin, end in product(begins, ends))
+    return any(least_distance(path, extent(place)) == 0 for path, place in product(paths, places))
 
 
 def _shapes(c: Configuration, entity: Name) -> list[Geometry]:

@@ -133,5 +133,5 @@ def extreme(one, other, best=np.min, count=150):
         distances = apart(a, b)
         i, j = np.unravel_index((sign * distances).argmin(), distances.shape)
         middles = (shares[0][i], shares[1][j])
-        spans, count = tuple(4 * s / count for s in spans), 40 if step == 0 else count
+        spans, count = tuple(10 * s / count for s in spans), 40 if step == 0 else count
     return float(distances[i, j])

@@ -1,13 +1,18 @@
 """Random flights, flown by the oracle: every sample is in the region, and in the relations that regions promise."""
 
+import os
+import time
+from contextlib import suppress
 from dataclasses import dataclass
+from itertools import count
+from pathlib import Path
 
 import numpy as np
 from drawing_regions import geometry, rings
 from oracles.flown_samples import at_rest, renewed, somewhere, under_way
 from oracles.random_places import WORLDS, place
 from oracles.sampled_geodesics import apart, away, extreme, is_in, surrounded
-from scale import IS_WHOLE, seeds
+from scale import IS_WHOLE, seeds, soak
 
 from physical import (
     EntityMotion,
@@ -15,6 +20,7 @@ from physical import (
     Geometry,
     Located,
     Region,
+    RegionError,
     Transit,
     Ways,
     at_least,
@@ -31,6 +37,9 @@ from physical.place_nesting import Place
 
 COUNT = 100 if IS_WHOLE else 30
 TOLERANCES = {"country": 0.5, "continent": 5.0}
+MINUTES = float(os.environ.get("BIGACTORS_FLIGHTS_MINUTES", "30"))
+CURSOR = Path(__file__).parents[2] / ".hypothesis" / "flights"
+"""The number of the next flight: a soak goes on where the last one ended."""
 
 
 @dataclass
@@ -175,6 +184,21 @@ def _most(one, other):
         for a in one.parts
         for b in other.parts
     )
+
+
+@soak
+def test_flights_without_end():
+    """Fly on from the last soak's end, for some minutes: ten a second make 100,000 in a few nights."""
+    first, until = int(CURSOR.read_text()) if CURSOR.exists() else 1_000, time.monotonic() + 60 * MINUTES
+    CURSOR.parent.mkdir(exist_ok=True)
+    for seed in count(first):
+        CURSOR.write_text(str(seed))  # a failure is met again
+        with suppress(RegionError):  # too large, and refused
+            test_every_sample_of_a_flight_is_in_the_region(seed)
+            test_what_relations_promise_of_a_place_holds_for_every_sample(seed)
+            test_the_nearest_points_of_two_flights_are_no_farther_than_any_samples(seed)
+        if time.monotonic() > until:
+            break
 
 
 def test_the_oracle_flies_away_from_a_wrong_region():

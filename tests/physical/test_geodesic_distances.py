@@ -67,7 +67,8 @@ def test_an_area_lies_within_some_metres_of_another_as_its_farthest_point_does(s
     corners = one[rng.integers(0, len(one), 400)]
     inner = np.array([_mixed(corners[rng.integers(0, 400, 3)], rng) for _ in range(20)])
     some = inner[away(inner, rings(a)) == 0.0] if len(one) > 2 else one
-    sampled = away(np.concatenate([one, some]), rings(b)).max()
+    sides = on_ring(one, rng.random(60))
+    sampled = away(np.concatenate([one, some, sides]), rings(b)).max()
     assert not lies_within(a, b, sampled - 0.01)
     if _is_convex(b):
         border = away(on_ring(one, np.linspace(0, 1, 40)), rings(b)).max()
@@ -93,6 +94,29 @@ def test_the_dent_of_a_place_is_far_from_it():
     ends = metres([0.1, 0.3], [0.15, 0.3])[0]
     assert not lies_within(dent, source_area(horseshoe), ends - 20)
     assert lies_within(dent, source_area(horseshoe), 12_500)
+
+
+@pytest.mark.parametrize("size", [2_000.0, 20_000.0, 200_000.0])
+def test_a_line_across_a_dent_is_as_far_from_the_place_as_its_middle(size):
+    """Both ends are in the arms of a horseshoe; along its middle line, many points are equally far from both arms."""
+    shape = np.array([(0, 0), (10, 0), (10, 10), (9, 10), (9, 1), (1, 1), (1, 10), (0, 10)])
+    horseshoe = geometry(np.round(shape * size / 1_113_200 + [0.0, 0.001], 7))
+    place = source_area(horseshoe)
+    (west, south), (east, north) = (
+        np.array(rings(place)[0]).min(axis=0),
+        np.array(rings(place)[0]).max(axis=0),
+    )
+    level = south + 0.6 * (north - south)
+    arms = [west + 0.05 * (east - west), west + 0.95 * (east - west)]
+    line = area_of(hull(point(level, arms[0]), point(level, arms[1])))
+    ends = [np.repeat([[arm, level]], 401, axis=0) for arm in arms]
+    across = between(*ends, np.linspace(0, 1, 401))
+    middle = away(across, rings(place)).max()
+    wide = area_of(RegionPart((horseshoe,), spanned=True))
+    assert not lies_within(line, place, middle - 0.01)
+    assert not lies_within(wide, place, middle - 0.01)
+    assert lies_within(line, place, middle + 0.5 + 1e-5 * size)
+    assert lies_within(wide, place, 0.4 * size + 0.5 + 1e-3 * size)
 
 
 def test_the_side_of_an_area_between_two_corners_is_farther_than_both():

@@ -32,6 +32,7 @@ from physical import (
 )
 from physical.frame import geod
 from physical.place_nesting import Place
+from physical.region_clearances import outermost
 
 WEST, BESIDE = box((37.0, -9.0), (37.05, -8.95)), box((37.0, -8.95), (37.05, -8.9))
 NORTH = box((37.05, -9.0), (37.1, -8.95))
@@ -342,3 +343,21 @@ def test_what_lies_in_a_certain_place_is_no_distance_from_it_whatever_its_margin
     assert surely_in(inside, certain(WEST))
     assert within(inside, certain(WEST), 0.0)
     assert not within(flying(INNER, margin=3_000.0), certain(WEST), 100.0)
+
+
+# --- beyond a place ---------------------------------------------------------------------------------
+
+
+def test_a_region_reaches_beyond_a_place_by_its_farthest_corner_or_by_its_margin():
+    east, depth = point(37.02, -8.9), 500.0
+    found = outermost(flying(INNER, east, margin=100.0), certain(WEST))
+    assert found.metres == pytest.approx(distance(east, point(37.02, -8.95)) + 100, abs=1)
+    assert distance(found.point, east) < 0.1
+    spot = geod().fwd(-8.95, 37.02, -90, depth)
+    inside = point(spot[1], spot[0])
+    assert outermost(flying(inside, point(37.02, -8.97), margin=depth + 20), certain(WEST)).metres == (
+        pytest.approx(20, abs=0.1)
+    )
+    assert outermost(flying(inside, point(37.02, -8.97), margin=depth - 20), certain(WEST)) is None
+    assert outermost(ABSENT, certain(WEST)) is None
+    assert outermost(flying(east), resting(WEST)) is None

@@ -143,3 +143,19 @@ def test_an_invariant_about_the_way_silences_the_warning_about_the_place():
 def test_a_mistake_in_a_rule_is_reported_alone(claim):
     rule = "rule bad(u: UAV) { u | -> u }\nBigActor b hosted_at uav1 with_behavior { control(bad(uav0)) }\n"
     assert refusal(claim, f"{rule}control timed") == {Code.RULE_SYNTAX}
+
+
+@pytest.mark.parametrize(
+    ("claim", "hint"),
+    [
+        ("uav0 not within 5 km of uav1", "write not uav0 within ..."),
+        ("uav0 not at least 50 m from uav1", "write not uav0 at ..."),
+        ("definitely uav0 in area0", "write surely uav0 in ..."),
+        ("not maybe uav0 in prison0", "write possibly uav0 in ..."),
+        ("uav0 within 25 of uav1", "write 25 m or 25 km"),
+    ],
+)
+def test_a_claim_in_other_words_is_refused_with_the_one_to_write(claim, hint):
+    with pytest.raises(MissionError) as refused:
+        mission(claim)
+    assert refused.value.diagnostics[0].hint == hint

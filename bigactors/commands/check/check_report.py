@@ -189,7 +189,7 @@ def report_lines(
     if isinstance(result, FailedMission):
         return
     report = result.report if ways else replace(result.report, corridors=None)
-    cautions = cautions_of(result.mission)
+    cautions = cautions_of(result.mission, result.report)
     before = list(_caution_lines(result.name, cautions, everything=everything))
     after = list(_tally_lines(result, report, cautions, everything=everything))
     yield from before

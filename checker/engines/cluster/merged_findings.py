@@ -7,14 +7,14 @@ from typing import Any
 from checker.engines.cluster.numbering import Places
 from checker.engines.contract import Inspect
 from checker.properties.findings import Collected, Finding
-from checker.properties.flown_stances import FlownStances
 from checker.properties.inspections import Inspection, Invariant
+from checker.properties.stance_questions import StanceQuestions
 from checker.properties.visited_statements import Visited
 
 
 def is_mergeable(inspection: Inspect) -> bool:
     """Return whether the results of an inspection can be merged from parts, one for each worker."""
-    return isinstance(inspection, Visited | FlownStances | Inspection)
+    return isinstance(inspection, Visited | StanceQuestions | Inspection)
 
 
 def merge(into: Inspect, parts: Sequence[Any], places: Places) -> None:
@@ -22,7 +22,7 @@ def merge(into: Inspect, parts: Sequence[Any], places: Places) -> None:
     if isinstance(into, Inspection):
         merge_collected(into.collected, [part.collected for part in parts], places)
     for part in parts:
-        if isinstance(into, Visited | FlownStances):
+        if isinstance(into, Visited | StanceQuestions):
             into.add(part)
         if isinstance(into, Invariant):
             into.valuations.add(part.valuations)

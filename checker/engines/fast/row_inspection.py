@@ -26,10 +26,10 @@ from checker.engines.fast.proposition_table import Profiles
 from checker.engines.fast.row_survey import RowSurvey, distinct
 from checker.limits import BoundMet, look
 from checker.properties.findings import Collected, Key
-from checker.properties.flown_stances import FlownStances
 from checker.properties.inspections import Excerpt, Inspection, Invariant, Reachability, Rules
 from checker.properties.invariant_vacuity import bindings, truth
 from checker.properties.races import ControlRaces
+from checker.properties.stance_questions import StanceQuestions
 from checker.properties.visited_statements import Visited, where_it_stands
 from semantics.behaviours.expressions import Fault
 from semantics.properties.propositions import Proposition, atoms_of, holds
@@ -57,8 +57,8 @@ def inspect_fast(survey: RowSurvey, inspections: Iterable[Inspect]) -> None:
                 continue
             case Visited():
                 look_at_visited(survey, each)
-            case FlownStances():
-                look_at_flights(survey, each)
+            case StanceQuestions():
+                look_at_stances(survey, each)
             case Invariant():
                 look_at_invariant(survey, each)
             case Reachability():
@@ -325,11 +325,11 @@ def look_at_reachability(survey: RowSurvey, inspection: Reachability) -> None:
         inspection.collected.examined, inspection.collected.example = len(true), int(true[0])
 
 
-# --- flights -----------------------------------------------------------------------------------------------------
+# --- stances -----------------------------------------------------------------------------------------------------
 
 
-def look_at_flights(survey: RowSurvey, inspection: FlownStances) -> None:
-    """Collect the stances of entities in transit, alone and in pairs; a bound that is met leaves some out."""
+def look_at_stances(survey: RowSurvey, inspection: StanceQuestions) -> None:
+    """Collect the stances of entities, alone and in pairs; a bound that is met leaves some out."""
     try:
         for question in inspection.questions():
             for answer in survey.answers(question):

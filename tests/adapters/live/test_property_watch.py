@@ -1,5 +1,7 @@
 """Invariants about ways while a mission runs: held against what is seen, to figures by pyproj."""
 
+import math
+
 import pytest
 from live_missions import TWO, Run, aged, mission, seen
 from pyproj import Geod
@@ -8,12 +10,14 @@ from adapters.live import property_watch
 from adapters.live.ground_formulas import TooManyPartsError, about_ways, grounded
 from adapters.live.plan import Plan
 from adapters.live.seen_regions import STRONGEST
-from adapters.plugin import Hold, TakenOver
+from adapters.plugin import Hold, TakenOver, Underway
 from physical import Velocity
+from semantics.state.station_partition import Parting, parted
 
 GEOD = Geod(ellps="WGS84")
 WEST, EAST, NORTH = (37.01, -8.65), (37.01, -8.61), (37.012, -8.652)
 """Of uav0, of east0's centre, of uav1."""
+BOAT = (37.03, -8.63)
 
 FLIES = "BigActor a hosted_at uav0 with_behavior { control(MOVE_HOST_TO east0) }"
 STILL = 'BigActor a hosted_at uav0 with_behavior { react { case "go" => skip } }'
@@ -271,6 +275,48 @@ def test_a_vehicle_that_is_not_heard_any_more_may_be_anywhere():
     run.turn(9.0, aged(seen("uav0", WEST, 9.0), 5.0))
     assert standing(run).figure == "uav1 is not seen and may be anywhere; uav0 at least 50 m from uav1"
     assert not standing(run).holds
+
+
+def test_a_vehicle_that_may_leave_its_area_has_the_metres_and_the_point():
+    run = watching('invariant "in": surely uav0 in west0', body=FLIES)
+    beyond = metres(EAST, (EAST[0], -8.64))
+    assert standing(run, "in").figure == f"uav0 may be up to {math.ceil(beyond)} m outside west0"
+    assert metres(standing(run, "in").points[0], EAST) < 0.1
+
+
+SENT = 'BigActor b hosted_at gcs0 with_behavior { react { case "go" => control(MOVE uav1 TO east0%s) } }'
+
+
+@pytest.mark.parametrize(
+    ("via", "holds"),
+    [("", True), (" VIA north0", False)],
+    ids=["straight", "by a place"],
+)
+def test_a_vehicle_that_another_station_sent_may_fly_by_any_way_that_the_mission_has(via, holds):
+    """The other station does not say by which places: the text does."""
+    away = TWO.replace("east0:", "north0: Location = box (37.042, -8.628) (37.038, -8.632)\n  east0:")
+    checks = 'invariant "p": uav1 at least 300 m from boat0'
+    elaborated = mission(f"{away}{STILL} {SENT % via} check {{ {checks} }}")
+    parting = Parting("gcs1", {"gcs0": "gcs0", "gcs1": "gcs1", "uav0": "gcs1"}, {}, {})
+    plan = Plan(
+        parted(elaborated.initial, parting),
+        {"uav0": "autopilot", "uav1": "stations"},
+        invariants=about_ways(*elaborated.properties),
+        fixed=elaborated.fixed,
+        peers="stations",
+    )
+    run = Run(plan)
+    run.turn(
+        0.0,
+        seen("uav0", WEST, 0.0),
+        seen("uav1", NORTH, 0.0, "stations"),
+        seen("boat0", BOAT, 0.0, kind="Vessel"),
+    )
+    assert standing(run, "p").holds
+    run.turn(1.0, seen("uav1", NORTH, 1.0, "stations"), reports=[Underway("uav1", 1.0, "east0")])
+    run.turn(2.0, seen("uav1", NORTH, 2.0, "stations"), seen("boat0", BOAT, 2.0, kind="Vessel"))
+    assert run.messages() == []
+    assert standing(run, "p").holds is holds
 
 
 def test_another_ship_moves_on_at_the_speed_that_it_reported():

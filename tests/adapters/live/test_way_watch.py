@@ -4,17 +4,18 @@ import pytest
 from live_missions import EAST, TOUR, WEST, Run, mission, seen
 from pyproj import Geod
 
-from adapters.live.batch import Batch
+from adapters.live.batch import Batch, Heard, Saying
 from adapters.live.commanded import Commanded
 from adapters.live.core import resumed, watch
 from adapters.live.live_state import LiveState
 from adapters.live.plan import Plan
-from adapters.plugin import Hold, TakenOver
+from adapters.plugin import Gone, Hold, TakenOver
 from adapters.recording.encoding import ways_json
 from adapters.recording.mcap_files import Message
 from bigactors.recordings import ways_of
 from physical import Band
 from semantics.live_policy import Fallback, LivePolicy
+from semantics.state.requests import FLY
 
 GEOD = Geod(ellps="WGS84")
 FLIES = "BigActor a hosted_at uav0 with_behavior { control(MOVE_HOST_TO east0) }"
@@ -129,6 +130,31 @@ def test_a_vehicle_does_not_arrive_below_its_band():
     assert "commit" not in run.rules
     run.turn(2.0, seen("uav0", EAST, 2.0, altitude=Band(101, 101)))
     assert "commit" in run.rules
+
+
+# --- one flight at a time
+
+
+def test_a_vehicle_under_way_that_is_gone_stays_in_transit_so_no_flight_outlives_another():
+    """Regions after an arrival rest on it: the vehicle is on its way to the point of the flight that ends."""
+    again = """
+BigActor a hosted_at uav0 with_behavior { control(MOVE_HOST_TO east0) }
+BigActor b hosted_at uav0 with_behavior { react { case "go" => control(MOVE_HOST_TO east0 VIA west0) } }
+environment {
+  UAV strays at most 100 m
+  uav0 vanishes
+  uav0 appears at point (37.01, -8.65) linked control:gcs0
+  says "go" to b at most once
+}
+"""
+    run = flying(again)
+    run.turn(1.0, Heard("autopilot", Gone("uav0", 1.0, "autopilot")), sayings=[Saying("b", "go")])
+    for now in (2.0, 900.0):
+        run.turn(now)
+        assert run.state.configuration.structure.physical.going_to("uav0") == "east0"
+    run.turn(901.0, seen("uav0", WEST, 901.0))
+    flights = [each for each in run.state.configuration.eta.all() if isinstance(each.request, FLY)]
+    assert [each.request.agent for each in flights] == ["a"]
 
 
 # --- resumed runs
