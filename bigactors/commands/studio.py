@@ -64,10 +64,10 @@ def run(options: Namespace) -> Exit:
 
 async def _serve(file: Path, options: Namespace) -> None:
     import asyncio
-    import webbrowser
 
     from adapters.addresses import LOOPBACK
     from adapters.console.access import Access
+    from bigactors.browser_launch import opened_in_browser
 
     access = Access()
     async with AsyncExitStack() as stack:
@@ -76,7 +76,7 @@ async def _serve(file: Path, options: Namespace) -> None:
         say(f"studio: {link}")
         sys.stdout.flush()
         if not options.no_browser:
-            await asyncio.to_thread(webbrowser.open, link)
+            await asyncio.to_thread(stack.enter_context, opened_in_browser(link))
         await asyncio.Event().wait()
 
 
