@@ -37,7 +37,7 @@ MOST_STATIONS = 254
 ROS = "ros"
 SIMULATED = "simulated"
 GROUND = 20.0
-"""The metres above the sea of a simulated vehicle's home."""
+"""The metres above the sea of a simulated vehicle's home; a boat's is at the sea."""
 
 
 def plugins_of(
@@ -108,7 +108,9 @@ def _simulated(craft: Craft, word: str, mission: ElaboratedMission, key: Signing
         hint = f"place it in the world: {craft.entity}: {craft.kind} = point (37.0, -8.6)"
         raise Mistake(f"'{craft.entity}' stands at no point in the mission, so it has no home", hint)
     latitude, longitude = at.geometry.vertices[0]
-    return Vehicle(kinds[word], (latitude, longitude, GROUND), craft.system or 1, signing=key)
+    kind = kinds[word]
+    ground = 0.0 if kind is Kind.BOAT else GROUND
+    return Vehicle(kind, (latitude, longitude, ground), craft.system or 1, signing=key)
 
 
 def _sensor(options: Namespace, mission: ElaboratedMission) -> tuple[Plugin, ...]:
