@@ -430,6 +430,7 @@ class Status:
         returning: Whether it is in the mode in which it flies home.
         lacks: The reason why it has no valid position; empty if it has one.
         follows: Whether it is under way in the mode in which it follows the mission on board.
+        surface: Whether it moves on water or on the ground, so that no height of it is shown.
     """
 
     entity: str
@@ -446,6 +447,7 @@ class Status:
     returning: bool | None = None
     lacks: str = ""
     follows: bool | None = None
+    surface: bool = False
 
 
 @dataclass(frozen=True, slots=True)

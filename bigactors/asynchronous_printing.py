@@ -68,8 +68,10 @@ class Printer:
             self._writing = True
             if not self._left_out:
                 return self._waiting.popleft()
+            from physical.wordings import counted  # noqa: PLC0415 - most commands leave out nothing
+
             count, self._left_out = self._left_out, 0
-            return self._waiting[0][0], f"... {count:,} lines left out: the output was stopped\n"
+            return self._waiting[0][0], f"... {counted(count, 'line')} left out: the output was stopped\n"
 
 
 def _write(stream: TextIO, text: str) -> None:

@@ -146,7 +146,7 @@ def _fly(options: Namespace, speed: float | None) -> tuple[Ending, bool]:
     with record(flight) as tape, flying_output():
         ending = run_simulated(_flying(flight, terminal, tape, folder), speed)
         terminal.ends()
-        say(f"{ending.reason} after {ending.state.number} steps")
+        say(f"{ending.reason} after {counted(ending.state.number, 'step')}")
     return ending, terminal.broken
 
 

@@ -44,6 +44,14 @@ def suggestion(word: str, among: Iterable[str]) -> str:
     return did_you_mean(word, among)
 
 
+def near_or_known(word: str, known: Iterable[str], many: str) -> str:
+    """Return `did you mean ...?`, or the known names as a list with the plural of their noun."""
+    from bigraphs.notation.spelling import listed  # noqa: PLC0415 - no correct command needs it
+
+    names = tuple(known)
+    return suggestion(word, names) or listed(names, many)
+
+
 def unreadable(path: str, error: OSError) -> Mistake:
     """Return the mistake for a file or folder that the system refuses."""
     return Mistake(error.strerror or str(error), place=path)

@@ -13,6 +13,7 @@ from checker import Outcome, Report, Trace, Verdict, Violation
 from checker.reports.lanes import LaneStep, lanes_of_trace
 from checker.reports.report import MARKS, size_text, verdict_text
 from checker.traces import print_length
+from physical.wordings import counted
 from semantics.state.configuration import Configuration
 
 MOST_ENTITIES: Final = 200
@@ -43,7 +44,7 @@ def trace_html(trace: Trace) -> str:
     shown = [step for step in lanes.steps if step.number <= MOST_STEPS or step.role]
     rows = (_row(step, len(lanes.names)) for step in shown)
     left_out = len(lanes.steps) - len(shown)
-    more = [f"{left_out:,} more steps are not shown"] if left_out > 0 else []
+    more = [f"not shown: {counted(left_out, 'more step')}"] if left_out > 0 else []
     return element(
         "div",
         element("p", text(print_length(trace))),

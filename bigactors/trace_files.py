@@ -14,6 +14,7 @@ from bigactors.picture_files import draw_run
 from bigactors.pictures import RegionMarks, marks_of
 from checker import Trace, print_trace, to_json
 from checker.reports.causes import Cause, causes_of, formulas_of
+from physical.wordings import counted
 from semantics.properties.kinds import PropertyKind
 from semantics.state.printing import print_configuration
 from specs.elaboration import ElaboratedMission
@@ -136,7 +137,7 @@ def _free(path: Path, taken: list[Path]) -> Path:
 def _lines(checked: Checked, evidence: Evidence) -> Iterator[str]:
     trace = evidence.trace
     yield f"{checked.name} ({checked.digest})"
-    yield f"{evidence.about}; {len(trace)} steps"
+    yield f"{evidence.about}; {counted(len(trace), 'step')}"
     yield ""
     yield f"c0 = {print_configuration(trace.initial)}"
     yield from print_trace(trace)

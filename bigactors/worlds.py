@@ -15,6 +15,7 @@ from physical.file_account import FileAccount, Read
 from physical.geojson import MAX_BYTES
 from physical.long_edges import check_width
 from physical.place_files import PLACES, read_place_file
+from physical.wordings import counted
 from semantics.behaviours.program import Program
 from semantics.state.configuration import Configuration
 from semantics.state.initial import initial
@@ -184,5 +185,7 @@ def census(world: World) -> str:
     """Return the number of entities of each kind, in words."""
     counts = Counter(each.kind for each in world.properties)
     listed = ", ".join(f"{count} {kind}" for kind, count in sorted(counts.items()))
-    left_out = f" ({world.left_out} more are not of these kinds or not within)" if world.left_out else ""
-    return f"{len(world.properties)} entities" + (f": {listed}" if listed else "") + left_out
+    left_out = (
+        f" ({counted(world.left_out, 'other')} not of these kinds or not within)" if world.left_out else ""
+    )
+    return counted(len(world.properties), "entity", "entities") + (f": {listed}" if listed else "") + left_out

@@ -13,7 +13,7 @@ from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final, TypeAlias
 
-from bigraphs.errors import BigraphError
+from bigraphs.errors import BigraphError, counted
 from bigraphs.interface import Interface
 from bigraphs.signature import Signature
 
@@ -294,7 +294,8 @@ def _check_distinct(what: str, names: Collection[str]) -> None:
 def _check_ports(bigraph: Bigraph, node: Node) -> None:
     arity = bigraph.signature[node.control].arity
     if arity is not None and arity != len(node.ports):
-        raise BigraphError("arity", f"{node} has {len(node.ports)} links, its control has {arity} ports")
+        links = counted(len(node.ports), "link")
+        raise BigraphError("arity", f"{node} has {links}, its control has {counted(arity, 'port')}")
     for link in node.ports:
         _check_link(bigraph, link, str(node))
 

@@ -63,6 +63,15 @@ class NotationError(BigraphError):
         return f"{self.line}:{self.column}: {super().__str__()}"
 
 
+def counted(count: int, one: str) -> str:
+    """Return a count with its noun.
+
+    >>> counted(1, "site"), counted(1234, "state")
+    ('1 site', '1,234 states')
+    """
+    return f"{count:,} {one}{'' if count == 1 else 's'}"
+
+
 _WIDEST = 100
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from bigraphs.algebra import parallel, substitution
 from bigraphs.bigraph import Bigraph
-from bigraphs.errors import BigraphError
+from bigraphs.errors import BigraphError, counted
 from bigraphs.matching import Match, find_matches
 
 
@@ -62,7 +62,7 @@ def rule(
     for missing in sorted(set(redex.outer_names) - set(reactum.outer_names)):
         reactum = parallel(reactum, substitution(missing, ()))
     if instantiation is None and len(redex.sites) != len(reactum.sites):
-        message = f"the redex has {len(redex.sites)} sites, the reactum {len(reactum.sites)}"
+        message = f"the redex has {counted(len(redex.sites), 'site')}, the reactum {len(reactum.sites)}"
         raise BigraphError("rule", message, "give the content of the reactum's sites by an instantiation map")
     order = tuple(range(len(redex.sites))) if instantiation is None else instantiation
     return ReactionRule(redex, reactum, order, name, node_variables, link_constants)

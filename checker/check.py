@@ -31,6 +31,7 @@ from checker.properties.visited_statements import Visited
 from checker.reduction.refusals import Reduction, RefusedError
 from checker.traces import Trace, trace_of, trace_to
 from checker.verdicts import Outcome, Report, Verdict, Verdicts, Violation
+from physical.wordings import counted
 from semantics.properties.kinds import PropertyKind
 from semantics.properties.property import Property, asks_of_regions, instantiated_region_atoms, watching
 from semantics.races.monitor import monitored
@@ -472,9 +473,9 @@ class _Check:
         shown = _shown(violations, self.most)
         different = control.different + stale.different
         count, examined = control.count + stale.count, control.examined + stale.examined
-        searched = f"{len(self.remembered.configurations):,}"
+        searched = counted(len(self.remembered.configurations), "configuration")
         reduced = ", reduced by por" if self.remembered.reducer else ""
-        note = f"searched over {searched} configurations with the monitor's memory{reduced}"
+        note = f"searched over {searched} with the monitor's memory{reduced}"
         remarks = self.vacuous(asked, outcome, examined)
         return Verdict(asked, outcome, shown, count, examined, witness, note, different, remarks)
 

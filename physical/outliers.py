@@ -20,6 +20,12 @@ RADIUS: Final = 6_371_000.0
 REMOTE: Final = 1_000_000.0
 """The distance in metres from everything else at which a position is probably a mistake."""
 
+LONELY: Final = 50_000.0
+"""The distance in metres from all else at which a point is probably a mistake, if all else lies close together."""
+
+MOST_COMPARED: Final = 1_000
+"""The most vertices of a world whose points are compared one by one."""
+
 MOST: Final = 20
 """The largest number of reported outliers; each is measured against all other entities."""
 
@@ -67,6 +73,28 @@ def outliers(geometries: Mapping[Key, Geometry]) -> dict[Key, float]:
     ]
     found = {key: apart(geometries[key], rest) for key in others[:MOST]}
     return {key: metres for key, metres in found.items() if metres >= REMOTE}
+
+
+def lonely_points(geometries: Mapping[Key, Geometry]) -> dict[Key, float]:
+    """Return the points far from all else, and twice as far as all else extends, with their distance in metres."""
+    spots = {key: [_spot(vertex) for vertex in geometry.vertices] for key, geometry in geometries.items()}
+    if sum(map(len, spots.values())) > MOST_COMPARED:
+        return {}
+    found = {}
+    for key, (spot, *more) in spots.items():
+        others = [each for other, of in spots.items() if other != key for each in of]
+        if more or not others or min(math.dist(spot, each) for each in others) < LONELY:
+            continue
+        metres = apart(geometries[key], (each for other, each in geometries.items() if other != key))
+        extent = _diagonal(others)
+        if extent > 0 and metres >= max(LONELY, 2 * extent):
+            found[key] = metres
+    return found
+
+
+def _diagonal(spots: Iterable[tuple[float, float, float]]) -> float:
+    """Return the diagonal of the box around points in space."""
+    return math.hypot(*(max(axis) - min(axis) for axis in zip(*spots, strict=True)))
 
 
 def is_swapped(geometry: Geometry, rest: Iterable[Geometry], metres: float) -> bool:
@@ -145,7 +173,11 @@ def _is_wide(geometry: Geometry) -> bool:
 
 def _cube(position: Position) -> Cube:
     """Return the cube of space that contains a position."""
+    return tuple(math.floor(each / CELL) for each in _spot(position))
+
+
+def _spot(position: Position) -> tuple[float, float, float]:
+    """Return a position as metres in space."""
     latitude, longitude = map(math.radians, position)
-    ring = math.cos(latitude)
-    spot = (ring * math.cos(longitude), ring * math.sin(longitude), math.sin(latitude))
-    return tuple(math.floor(RADIUS * each / CELL) for each in spot)
+    ring = RADIUS * math.cos(latitude)
+    return (ring * math.cos(longitude), ring * math.sin(longitude), RADIUS * math.sin(latitude))

@@ -546,8 +546,9 @@ class Code(Enum):
     FAR_FROM_THE_REST = (
         "LS702",
         "far from everything else",
-        """An entity is a thousand kilometres or more from all others. Usually latitude and longitude are swapped:
-        missions use (latitude, longitude), GeoJSON uses [longitude, latitude].""",
+        """An entity is a thousand kilometres or more from all others; or a point is 50 km or more from all else, and
+        twice as far as all else extends. Usually latitude and longitude are swapped, or a digit is wrong: missions use
+        (latitude, longitude), GeoJSON uses [longitude, latitude].""",
     )
 
     TWO_TYPES = (

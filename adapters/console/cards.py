@@ -10,7 +10,15 @@ from typing import Final, NamedTuple
 from adapters.console.agent_states import agents
 from adapters.console.alerts import ALL, fallen_back, grounded
 from adapters.console.console_view import Json
-from adapters.console.facts import ControllingStations, Facts, Link, OrderState, Position, VehicleCommand
+from adapters.console.facts import (
+    ControllingStations,
+    Facts,
+    Link,
+    OrderState,
+    Position,
+    SeenEntity,
+    VehicleCommand,
+)
 from adapters.console.flights import concerned
 from adapters.console.parsing import text
 from adapters.console.return_preview import of_return
@@ -95,7 +103,7 @@ def _card(facts: Facts, name: Name, asked: Asked | None, where: Whereabouts, sai
         "armed": status.get("armed"),
         "battery": status.get("battery"),
         "heading": heading if heading is not None or seen is None else seen.course,
-        "altitude": None if seen is None or seen.altitude is None else round(seen.altitude),
+        "altitude": _altitude(seen, status),
         "height": status.get("height"),
         "home": status.get("home"),
         "returning": status.get("returning", False),
@@ -109,6 +117,13 @@ def _card(facts: Facts, name: Name, asked: Asked | None, where: Whereabouts, sai
         "word": worst.word or WORDS[worst.level],
         "why": "; ".join(each.why for each in reasons),
     }
+
+
+def _altitude(seen: SeenEntity | None, status: Mapping[str, Json]) -> int | None:
+    """Return a vehicle's altitude in metres above the sea, None of a vehicle on water or on the ground."""
+    if seen is None or seen.altitude is None or status.get("surface", False):
+        return None
+    return round(seen.altitude)
 
 
 def _kind(facts: Facts, name: Name) -> str | None:

@@ -96,7 +96,8 @@ def _flown(facts: Facts, tracks: Sequence[Track]) -> Iterable[Sequence[str]]:
             yield name, "", "never", "never", "", ""
             continue
         times = [fix.time for fix in track.fixes if fix.time is not None]
-        heights = [fix.height for fix in track.fixes if fix.height is not None]
+        surface = facts.status.get(name, {}).get("surface", False)
+        heights = [fix.height for fix in track.fixes if fix.height is not None and not surface]
         highest = f"{max(heights):.0f} m above the sea" if heights else ""
         heard = (_time(min(times)), _time(max(times))) if times else ("", "")
         yield name, track.kind, *heard, f"{_length(track) / 1000:.2f} km", highest

@@ -168,6 +168,7 @@ def take_status(draft: Facts, time: float, data: Any) -> None:
                 "height": number(data.get("height")),
                 "home": _position(data.get("home")),
                 "returning": data.get("returning") is True,
+                "surface": data.get("surface") is True,
             }
             draft.status.bounded(MOST_VEHICLES)
             obeys(draft, time, name, tuple(texts(data.get("authority"))))

@@ -29,6 +29,7 @@ from adapters.mavlink.vehicle_identities import Craft, Stations
 from adapters.mavlink.zones import zones
 from adapters.plugin import Command, Follow, GoTo, HandOver
 from physical import Geometry, circle, contains, point, waypoint
+from physical.wordings import counted
 
 NEEDS_MORE: Final[dict[float, str]] = {1: "a take-off", 2: "a landing", 3: "a take-off and a landing"}
 """PX4's demands of each mission (MIS_TKO_LAND_REQ, navigator/mission_params.yaml); every path meets 4 and 5."""
@@ -295,9 +296,11 @@ def _of_mission(found: Items, known: Telemetry) -> Iterator[str]:
     first = known.profile is not None and known.profile.dialect.home_is_item
     rest = found[int(first) : len(found) - len(kept)]
     if any(item.command not in _OURS for item in rest):
-        yield f"has a mission of {len(found) - int(first)} items on board, which the flights of this mission replace"
+        items = counted(len(found) - int(first), "item")
+        yield f"has a mission of {items} on board, which the flights of this mission replace"
     if kept:
-        yield f"keeps its landing sequence: each upload ends with the last {len(kept)} items of the mission on board"
+        items = counted(len(kept), "item")
+        yield f"keeps its landing sequence: each upload ends with the last {items} of the mission on board"
     if known.parameters.get("RTL_AUTOLAND") in RETURNS_BY_LANDING and not kept:
         yield "has no landing sequence on board, which its RTL_AUTOLAND needs: when it returns, it circles"
 

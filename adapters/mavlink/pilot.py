@@ -283,6 +283,7 @@ def _with_its_words(outcome: Outcome, now: float) -> Outcome:
 def _status(pilot: Pilot, now: float) -> Status:
     known, authority = pilot.known, _authority(pilot)
     profile = None if known.mode is None else known.profile
+    surface = profile is not None and profile.takeoff is TakeOff.NONE
     station = pilot.stations.name_of(authority) or f"system {authority}"
     return Status(
         pilot.craft.entity,
@@ -293,11 +294,12 @@ def _status(pilot: Pilot, now: float) -> Status:
         battery=known.battery,
         heading=known.heading,
         authority=() if authority is None else (station,),
-        height=None if known.position is None else known.position.height,
+        height=None if known.position is None or surface else known.position.height,
         home=known.home,
         returning=None if profile is None else known.mode == profile.home,
         lacks=known.lacks(now),
         follows=None if profile is None else known.flying and known.mode == profile.auto,
+        surface=surface,
     )
 
 

@@ -78,7 +78,7 @@ def seen_json(seen: Seen) -> tuple[str, dict[str, Any]]:
     data = {each.name: _plain(getattr(seen, each.name)) for each in fields(seen)}
     match seen:
         case Status():
-            more = {name: data.pop(name) for name in ("lacks", "follows")}
+            more = {name: data.pop(name) for name in ("lacks", "follows", "surface")}
             return "status", data | {name: each for name, each in more.items() if each}
         case StatusText():
             return "said", data

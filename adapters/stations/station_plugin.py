@@ -69,6 +69,7 @@ from adapters.stations.station_messages import (
 )
 from adapters.typed_json import read_typed
 from physical import PhysicalError
+from physical.wordings import counted
 from semantics.state.logical_model import LogicalModel
 
 NAME: Final = "stations"
@@ -469,7 +470,7 @@ class Sharing(Watcher):
             other.reached = False
             where = ", ".join(self._peers.others[station].connect)
             waiting = self._journal.waiting(station)
-            kept = f"; {waiting:,} parcels wait for it" if waiting else ""
+            kept = f"; {counted(waiting, 'parcel')} to be sent" if waiting else ""
             detail = f"nothing from {station} at {where} for {silent:.0f} s; attempts go on{kept}"
             world.report(Trouble(NAME, world.now(), f"{station} is not reached", detail))
 

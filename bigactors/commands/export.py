@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Final
 
 from bigactors.arguments.options import MISSION, VARIATION
 from bigactors.exits import Exit
-from bigactors.mistakes import Mistake, suggestion
+from bigactors.mistakes import Mistake, near_or_known
 from bigactors.terminal import say_text, tell
 
 if TYPE_CHECKING:
@@ -89,4 +89,5 @@ def _asked(mission: ElaboratedMission, name: str) -> Property:
         if name in (each.name, each.kind.value):
             return each
     names = [each.name for each in mission.properties]
-    raise Mistake(f"{mission.name} asks for no property '{name}'", suggestion(name, names))
+    hint = near_or_known(name, names, "properties")
+    raise Mistake(f"{mission.name} asks for no property '{name:.60}'", hint)

@@ -14,6 +14,7 @@ MODULES: Final = (
     (console, "page/ui.js"),
     (console, "page/store.js"),
     (console, "page/bigraph.js"),
+    (console, "page/map/words.js"),
     (studio, "page/explorer.js"),
     (studio, "page/trace.js"),
 )

@@ -156,12 +156,12 @@ def _compact(run: dict[str, Any], unfolded: bool) -> dict[str, Any]:
 def _left_out(order: Sequence[int | None], looks: Sequence[dict[str, Any]]) -> Iterable[str]:
     missing = [number for number, frame in enumerate(order) if frame is None]
     undrawn = sum(frame is not None and None in looks[frame]["pictures"] for frame in order)
-    of = f"of {len(order):,} configurations"
+    of = f"of {counted(len(order), 'configuration')}"
     remedy = "a page made by `show` with --step K has those around c_K"
     if missing:
-        yield f"{len(missing):,} {of} are left out, between c{missing[0]} and c{missing[-1]}: {remedy}"
+        yield f"left out: {len(missing):,} {of}, between c{missing[0]} and c{missing[-1]}: {remedy}"
     if undrawn:
-        yield f"{undrawn:,} {of} are not drawn: {remedy}"
+        yield f"not drawn: {undrawn:,} {of}: {remedy}"
 
 
 # --- markup ---------------------------------------------------------------------------------------------------

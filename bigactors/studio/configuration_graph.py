@@ -6,9 +6,12 @@ import time
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
+from itertools import pairwise
 from typing import Any, Final
 
 from bigactors.commands.simulate.one_run import Choice
+from bigactors.studio.run_address import joined
+from checker import Trace
 from checker.reports.plain_steps import step_words
 from semantics.state.configuration import Configuration
 
@@ -29,36 +32,46 @@ class ConfigurationGraph:
 
     Attributes:
         numbers: The number of each configuration.
-        address: For each configuration, the steps by which it was found.
-        depths: For each configuration, the number of these steps.
+        address: For each configuration, the address of the run by which it was found.
+        depths: For each configuration, the number of steps of this run.
         edges: The words of the steps between two configurations.
         whole: Whether each step of each configuration is in it.
     """
 
     numbers: dict[Configuration, int] = field(default_factory=dict)
-    address: list[tuple[str, ...]] = field(default_factory=list)
+    address: list[str] = field(default_factory=list)
     depths: list[int] = field(default_factory=list)
     edges: dict[tuple[int, int], list[tuple[str | None, str]]] = field(default_factory=dict)
     whole: bool = True
 
-    def add(self, c: Configuration, address: tuple[str, ...]) -> int:
+    def add(self, c: Configuration, address: str, depth: int) -> int:
         """Return the number of a configuration, which is new if it was not known."""
         if c not in self.numbers:
             self.numbers[c] = len(self.address)
             self.address.append(address)
-            self.depths.append(len(address))
+            self.depths.append(depth)
         return self.numbers[c]
+
+    def follow(self, trace: Trace) -> None:
+        """Add the edges of a run, of which a seen world may have decided steps."""
+        for (before, after), step in zip(pairwise(trace.configurations), trace.steps, strict=True):
+            begin, end = self.numbers.get(before), self.numbers.get(after)
+            if begin is not None and end is not None and (begin, end) not in self.edges:
+                self.edges[begin, end] = [(step.label.agent, step_words(before, step.label, after))]
 
 
 def reached(
-    starts: Mapping[Configuration, tuple[str, ...]],
-    choices: Callable[[tuple[str, ...], Configuration], Iterable[Choice]],
+    starts: Mapping[Configuration, tuple[str, int]],
+    choices: Callable[[str, Configuration], Iterable[Choice]],
     most: int,
 ) -> ConfigurationGraph:
-    """Return the graph of at most so many configurations that is reached from some, breadth first."""
+    """Return the graph of at most so many configurations that is reached from some, breadth first.
+
+    `starts` has their addresses and depths.
+    """
     graph, end = ConfigurationGraph(), time.monotonic() + SECONDS
-    for c, address in starts.items():
-        graph.add(c, address)
+    for c, (address, depth) in starts.items():
+        graph.add(c, address, depth)
     for c in (waiting := list(starts)):
         here = graph.numbers[c]
         if time.monotonic() > end:
@@ -70,7 +83,7 @@ def reached(
             if not known and len(graph.numbers) >= most:
                 graph.whole = False
                 continue
-            there = graph.add(target, (*graph.address[here], str(rank)))
+            there = graph.add(target, joined(graph.address[here], rank), graph.depths[here] + 1)
             words = step_words(c, choice.transition.label, target)
             graph.edges.setdefault((here, there), []).append((choice.transition.label.agent, words))
             if not known:
@@ -86,7 +99,7 @@ def graph_json(
     bads = {number for c, number in graph.numbers.items() if bad(c)}
     kept = {*on_run, *bads, *_branching(graph)}
     nodes = [
-        {"id": n, "depth": graph.depths[n], "run": ".".join(graph.address[n])}
+        {"id": n, "depth": graph.depths[n], "run": graph.address[n]}
         | ({"at": on_run[n]} if n in on_run else {})
         | ({"bad": True} if n in bads else {})
         for n in sorted(kept)

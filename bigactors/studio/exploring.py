@@ -28,7 +28,8 @@ def answers(lines: TextIO) -> Iterator[dict[str, Any]]:
     if mission is None:
         yield {"refused": "the text has mistakes: what is shown is of a text without them"}
         return
-    exploration = Exploration(mission, Path(asked["directory"]))
+    given = None if asked["given"] is None else Path(asked["given"])
+    exploration = Exploration(mission, Path(asked["directory"]), given)
     yield {"answer": {}}
     for line in lines:
         try:

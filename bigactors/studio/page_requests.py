@@ -12,7 +12,7 @@ PROTOCOL: Final = "bigactors.studio/1"
 MOST_TEXT: Final = 1 << 20
 """The most characters of a mission's text in the studio."""
 
-MOST_BYTES: Final = 8 << 20
+MOST_BYTES: Final = 32 << 20
 """The most bytes of a frame."""
 
 MissionText = Annotated[str, Meta(max_length=MOST_TEXT)]

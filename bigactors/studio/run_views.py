@@ -74,7 +74,7 @@ def sections_of(
     c: Configuration, before: Configuration | None, fixed: frozenset[Name], step: int
 ) -> dict[str, Any]:
     """Return a configuration as the sections that the shared map and bigraph draw (docs/reference/console.md)."""
-    driven = frozenset(name for name, kind in c.setting.kinds.items() if c.setting.signature[kind].driven)
+    driven = frozenset(c.setting.driven())
     where, shown = whereabouts(c), places_of(c, fixed, driven)
     found = {
         name: entity_of(SeenEntity(kind, at, None, None, 0.0, 0.0, "", ()), where[name], True, name in driven)

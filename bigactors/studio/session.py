@@ -60,10 +60,12 @@ class Desk:
     Attributes:
         file: The mission's file; it may not be there yet.
         flight: The simulated flight.
+        run: The file of a run that the explorer shows first, if there is one.
     """
 
     file: Path
     flight: FlightProcess
+    run: Path | None = None
 
 
 class Session:
@@ -187,9 +189,14 @@ class Session:
         file = self._file.resolve()
         uri, name, types = file.as_uri(), file.name, [*TYPES]
         grammar = textmate_grammar()
-        await self._send(
-            "open", text=saved.text, digest=saved.digest, name=name, uri=uri, types=types, grammar=grammar
-        )
+        words = {
+            "name": name,
+            "uri": uri,
+            "types": types,
+            "grammar": grammar,
+            "given": self._given is not None,
+        }
+        await self._send("open", text=saved.text, digest=saved.digest, **words)
 
     async def _relay(self, server: ChildProcess) -> None:
         async for message in server.frames():
@@ -251,6 +258,10 @@ class Session:
     def _mission(self, text: TextFrame) -> dict[str, str]:
         return {"name": self._file.name, "text": text.text, "directory": str(self._file.resolve().parent)}
 
+    @property
+    def _given(self) -> str | None:
+        return None if self._desk.run is None else str(self._desk.run.resolve())
+
     async def _checked(self, text: TextFrame) -> None:
         child = await self._start("bigactors.lsp.worker")
         limits = {"configurations": MOST_CONFIGURATIONS, "seconds": MOST_SECONDS}
@@ -277,7 +288,7 @@ class Session:
             return {"refused": "there is no text yet"}
         if self._explorer is None:
             child = self._explorer = await self._start("bigactors.studio.exploring")
-            begun = await child.ask(self._mission(text))
+            begun = await child.ask(self._mission(text) | {"given": self._given})
             if begun is None or "refused" in begun or self._text is not text:
                 self._forget(child)
                 return begun if begun and "refused" in begun else {"refused": "the text has changed"}

@@ -29,9 +29,9 @@ class StudioService(PageService):
 
     protocol = PROTOCOL
 
-    def __init__(self, access: Access, site: Site, file: Path) -> None:
+    def __init__(self, access: Access, site: Site, file: Path, run: Path | None = None) -> None:
         super().__init__(access, site, {"studio": STUDIO_PAGE, "parts": PAGE}, MOST_BYTES)
-        self._desk = Desk(file, FlightProcess())
+        self._desk = Desk(file, FlightProcess(), run)
         self._pages = 0
 
     async def talk(self, socket: Any, role: Role, name: str) -> None:

@@ -15,6 +15,7 @@ from typing import Any, Final
 
 from bigraphs.bigraph import Bigraph
 from bigraphs.drawing import KINDS, LINKS
+from bigraphs.errors import counted
 from bigraphs.exports.dot import describe
 from bigraphs.exports.state_graph import RADIUS, places_of
 from bigraphs.node_labels import link_label
@@ -87,10 +88,10 @@ def first_states(system: TransitionSystem, most: int) -> TransitionSystem:
 
 
 def _summary(system: TransitionSystem, shown: int) -> str:
-    parts = [f"{len(system):,} states", f"{len(system.targets):,} transitions"]
+    parts = [counted(len(system), "state"), counted(len(system.targets), "transition")]
     parts.append("complete" if system.complete else f"incomplete: {system.reason}")
     if shown < len(system):
-        parts.append(f"the first {shown:,} states are shown")
+        parts.append(f"shown: the first {counted(shown, 'state')}")
     return ", ".join(parts)
 
 

@@ -159,7 +159,8 @@ def strengthened(formula: Formula, part: Subformula) -> Formula:
 def few(remarks: Sequence[str]) -> tuple[str, ...]:
     """Return the first remarks on parts, and the number of the others."""
     rest = len(remarks) - MOST_REMARKS
-    more = (f"{rest:,} more of its parts are never needed",) if rest > 0 else ()
+    are = "is" if rest == 1 else "are"
+    more = (f"{rest:,} more of its parts {are} never needed",) if rest > 0 else ()
     return (*remarks[:MOST_REMARKS], *more)
 
 

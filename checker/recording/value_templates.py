@@ -39,7 +39,7 @@ Family = Mapping[Name, Fact]
 
 def mobile_names(setting: Setting, first: Row) -> frozenset[Name]:
     """Return the names that may move, appear or disappear: observations of them change."""
-    driven = {name for name, kind in setting.kinds.items() if setting.signature[kind].driven}
+    driven = set(setting.driven())
     around = {clause.entity for clause in setting.environment if hasattr(clause, "entity")}
     aboard = {cell[-1] for cell, value in first.items() if isinstance(value, Carried)}
     agents: set[Name] = set()

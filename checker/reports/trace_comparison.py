@@ -82,7 +82,8 @@ def comparison_text(one: Trace, other: Trace, names: tuple[str, str]) -> Iterato
     for pair in found.pairs:
         yield _pair(pair, one, other)
     if any(found.beyond):
-        yield f"  and {found.beyond[0]:,} steps more of the first, {found.beyond[1]:,} of the second, not compared"
+        steps = counted(found.beyond[0], "step")
+        yield f"  and {steps} more of the first, {found.beyond[1]:,} of the second, not compared"
     yield from _ends(found)
 
 

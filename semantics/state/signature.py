@@ -83,6 +83,10 @@ class EntityKinds:
         """Return the kind of an entity."""
         return self.kinds[name]
 
+    def driven(self) -> tuple[Name, ...]:
+        """Return the entities that agents may drive, sorted."""
+        return tuple(sorted(name for name, kind in self.kinds.items() if self.signature[kind].driven))
+
     def naming(self, kinds: Mapping[Name, str]) -> Self:
         """Return the sorting with more entities; the containers are recomputed only if one of them is a place."""
         more = replace(self, kinds={**self.kinds, **kinds})

@@ -76,7 +76,7 @@ def remembered_at_first(setting: Setting) -> Changes:
 
 def _remembered(setting: Setting) -> tuple[Name, ...]:
     """Return the entities with a memory, sorted: those that can be driven, or put down at an unknown position."""
-    return tuple(sorted({*vehicles(setting), *_drifting_cargo(setting)}))
+    return tuple(sorted({*setting.driven(), *_drifting_cargo(setting)}))
 
 
 def _drifting_cargo(setting: Setting) -> Iterator[Name]:
@@ -89,11 +89,6 @@ def _drifting_cargo(setting: Setting) -> Iterator[Name]:
 
 def _adrift(setting: Setting) -> Iterator[Drifts]:
     return (each for each in setting.environment if isinstance(each, Drifts) and each.within)
-
-
-def vehicles(setting: Setting) -> tuple[Name, ...]:
-    """Return the entities that can be driven, sorted."""
-    return tuple(sorted(name for name, kind in setting.kinds.items() if setting.signature[kind].driven))
 
 
 # --- possible positions ---------------------------------------------------------------------------
@@ -171,7 +166,7 @@ def remembering(c: Configuration, transition: Transition) -> Transition:
     """Return the transition with the memory of flights updated, if the mission has a `timing` section."""
     if c.setting.timing is None or transition.label.rule not in MOVING:
         return transition
-    after, driven = transition.target, vehicles(c.setting)
+    after, driven = transition.target, c.setting.driven()
     written = {cell[1] for cell in after.state.changed(c.state) if cell[0] == "placement"}
     changed = {
         name for name in sorted(written) if after.read(placement_cell(name)) != c.read(placement_cell(name))

@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from typing import Final
 
 from bigraphs.notation.spelling import did_you_mean
+from physical.wordings import counted
 from specs.codes import Code
 from specs.diagnostics import Diagnostic, MissionError, Source
 from specs.syntax import Name, Node, Span
@@ -71,7 +72,8 @@ class Findings:
         found = MissionError(self.source, self._found).diagnostics
         shown, more = found[:MOST_SHOWN], found[MOST_SHOWN:]
         if more:
-            rest = Diagnostic(Code.TOO_MANY_MISTAKES, more[0].span, f"{len(more)} more mistakes from here on")
+            told = f"{counted(len(more), 'more mistake')} from here on"
+            rest = Diagnostic(Code.TOO_MANY_MISTAKES, more[0].span, told)
             shown = (*shown, rest)
         return MissionError(self.source, shown, self.warnings)
 

@@ -9,7 +9,7 @@ from typing import Final
 
 from physical import Geometry, Place, check_places
 from physical.geometry_measures import metres_text
-from physical.outliers import ON_DRY_LAND, all_swapped, is_swapped, outliers
+from physical.outliers import ON_DRY_LAND, all_swapped, is_swapped, lonely_points, outliers
 from semantics.environment import Clause, Placing
 from semantics.state.physical_model import Carried, Placed
 from specs import syntax as s
@@ -93,7 +93,7 @@ def warn_of_outliers(names: Names, world: InitialWorld, clauses: Iterable[tuple[
     """Warn of positions so far from all others that their latitude and longitude may be exchanged."""
     geometries = dict(_geometries(names, world, clauses))
     _warn_of_all(names, geometries)
-    found = outliers(geometries)
+    found = outliers(geometries) or lonely_points(geometries)
     rest = [geometry for key, geometry in geometries.items() if key not in found]
     for (span, words), metres in found.items():
         swapped = is_swapped(geometries[span, words], rest, metres)

@@ -6,6 +6,7 @@ from collections.abc import Container, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Final
 
+from physical.wordings import counted
 from semantics.behaviours.expressions import Expression, Literal, Variable
 from semantics.behaviours.patterns import Pattern
 from semantics.behaviours.statements import React, Send
@@ -265,9 +266,8 @@ class _Judge:
         if given.tuples and isinstance(index, Literal) and isinstance(index.value, int):
             longest = max(length for length, _ in given.tuples)
             if not 0 <= index.value < longest and given.sorts == {ValueSort.TUPLE}:
-                message = (
-                    f"{_shown(pair.left)} has {longest} items, counted from 0, and no item {index.value}"
-                )
+                items = counted(longest, "item")
+                message = f"{_shown(pair.left)} has {items}, counted from 0, and no item {index.value}"
                 self.findings.add(Code.WRONG_VALUE, pair.right, message, f"write 0 to {longest - 1}")
 
     def sum(self, pair: OperandPair) -> None:

@@ -14,6 +14,7 @@ from physical.file_account import Counting, Read
 from physical.geojson import MAX_BYTES as MAX_GEOJSON
 from physical.mmsi import KINDS
 from physical.place_files import PLACES, read_place_file
+from physical.wordings import counted
 from specs import syntax as s
 from specs.codes import Code
 from specs.elaboration.geometry import elaborate_geometry
@@ -96,7 +97,8 @@ def read_source(
     limited = places if entry.limit is None else places[: entry.limit]
     if len(limited) < len(places):
         notes.append(
-            f"of the {len(places)} entities in {entry.file.value} the first {len(limited)} are in the world"
+            f"{len(limited):,} of the {counted(len(places), 'entity', 'entities')} in {entry.file.value} "
+            f"{'is' if len(limited) == 1 else 'are'} in the world: the first"
         )
     usable = tuple(item for item in limited if _usable(item, entry, names))
     if len(usable) < len(limited):

@@ -115,6 +115,15 @@ def test_a_run_that_does_not_begin_says_whether_a_vehicle_is_silent_or_has_no_po
 # --- heights ------------------------------------------------------------------------------------------
 
 
+@pytest.mark.parametrize("kind", [Kind.BOAT, Kind.COPTER])
+@flown(by="kind")
+async def test_what_moves_on_the_water_has_no_height(f):
+    await until(lambda: any(each.mode and not each.lacks for each in f.world.of(Status)), 20)
+    last = f.world.of(Status)[-1]
+    assert last.surface == (f.vehicle.kind is Kind.BOAT)
+    assert (last.height is None) == last.surface
+
+
 @flown(Kind.PLANE)
 async def test_a_target_at_the_same_point_and_another_height_is_not_ours(f):
     await f.completes(GoTo("r1", "uav0", AREA))

@@ -97,7 +97,7 @@ class TestBig:
     def test_a_predicate_that_fails_comes_with_a_shortest_run(self, bigactors):
         code, out, _ = bigactors("big", "check", "--always", "meeting", "walk.big")
         assert code == 1
-        assert "  ✗ always meeting: violated\n      a shortest run to state 1, 1 steps:\n" in out
+        assert "  ✗ always meeting: violated\n      a shortest run to state 1, 1 step:\n" in out
         assert "        1: --walk--> " in out
 
     def test_what_holds_is_decided_by_looking_at_every_state(self, done):

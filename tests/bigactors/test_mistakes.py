@@ -66,12 +66,13 @@ show holds.mission --output tracks.geojson  # tracks are those of a trace
 show --trace run.json --step 2 --output tracks.geojson  # tracks are those of a whole trace
 replay nowhere.json  # nowhere.json: No such file or directory
 replay run.json --waypoints uav0=x.txt  # a route is written as one of .plan, .waypoints
-replay run.json --waypoints uav9=x.plan  # the mission has no entity 'uav9'
+replay run.json --waypoints uav9=x.plan  # the mission has no entity 'uav9'\n  hint: the only vehicle is uav0
 replay run.json --waypoints base0=x.plan  # nothing sends 'base0' anywhere
 replay run.json --waypoints uav0  # is not VEHICLE=FILE
 simulate handover --choose --json -  # --choose talks on standard output
 export --format tchecker oil_spill  # oil_spill has no times
 export --format tchecker endurance --property endurence  # did you mean 'endurance'?
+export --format tchecker endurance --property bogus  # hint: the properties are computation, deadlock_freedom, endurance
 export --format tchecker endurance --property race_freedom  # only deadlines and endurance are exported
 show oil_spill --timeline  # write a section timing
 show race_in_time --timeline --trace t.json  # --lanes shows the dates of one run
@@ -99,7 +100,7 @@ check --sign own.key oil_spill  # --sign signs a verdict
 run oil_spill --vehicle=uav0=udp:127.0.0.1:0 --unverified --trust own.key.pub  # --trust for a signed one
 check --verdict v oil_spill handover  # one mission
 run oil_spill --unverified  # no address: uav0\n  hint: give its address: --vehicle uav0=udp:127.0.0.1:14550, or
-run oil_spill --unverified --vehicle=uav9=udp:127.0.0.1:0  # no entity 'uav9'
+run oil_spill --unverified --vehicle=uav9=udp:127.0.0.1:0  # no entity 'uav9'\n  hint: the only vehicle is uav0
 run oil_spill --unverified --vehicle=gcs0=udp:127.0.0.1:0  # 'gcs0' is no vehicle
 run oil_spill --unverified --vehicle=uav0=carrier-pigeon  # no way to connect
 run oil_spill --unverified --vehicle=uav0=udp:127.0.0.1:0 --feed=radar=udp:1  # no feed 'radar'

@@ -136,7 +136,7 @@ def test_where_few_are_to_be_drawn_the_last_ones_are(trace):
     assert len({look["pictures"][0] for look in looks} - {None}) == 1
     undrawn = sum(None in look["pictures"] for look in looks)
     words = (
-        f"{undrawn} of {len(trace) + 1} configurations are not drawn: "
+        f"not drawn: {undrawn} of {len(trace) + 1} configurations: "
         "a page made by `show` with --step K has those around c_K"
     )
     assert told.left_out == (words,)
@@ -171,7 +171,7 @@ def test_of_a_trace_that_no_page_can_hold_the_ends_and_what_is_around_the_start_
     held = [number for number, place in enumerate(told.data["order"]) if place is not None]
     assert {0, 3, len(trace)} < set(held)
     assert len(held) == 4
-    assert f"{len(trace) - 3} of {len(trace) + 1} configurations are left out" in "".join(
+    assert f"left out: {len(trace) - 3} of {len(trace) + 1} configurations" in "".join(
         Reader(page_of(told)).texts
     )
 

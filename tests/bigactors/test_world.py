@@ -58,10 +58,10 @@ def test_it_is_drawn_if_asked(harbour, bigactors):
 @pytest.mark.parametrize(
     ("option", "kept"),
     [
-        ("--within=15,15,25,25", "\n1 entities: 1 Buoy (4 more are not of these kinds or not within)\n"),
-        ("--within=-15,15,25,25", "entities: 1 Buoy"),
+        ("--within=15,15,25,25", "\n1 entity: 1 Buoy (4 others not of these kinds or not within)\n"),
+        ("--within=-15,15,25,25", "entity: 1 Buoy"),
         ("--within=-10,170,10,-170", "\n0 entities"),  # across the antimeridian
-        ("--kinds=Berth, Harbour", "\n2 entities: 1 Berth, 1 Harbour (3 more"),
+        ("--kinds=Berth, Harbour", "\n2 entities: 1 Berth, 1 Harbour (3 others"),
     ],
 )
 def test_only_a_box_and_some_kinds_are_kept(bigactors, option, kept):

@@ -16,7 +16,7 @@ A, B, Z = Node("A"), Node("B", None, (0,)), Node("Z", None, (0,))
     ("nodes", "options", "message"),
     [
         ([Node("Q")], {}, "unknown control 'Q'"),
-        ([Node("B")], {}, "B has 0 links, its control has 1 ports"),
+        ([Node("B")], {}, "B has 0 links, its control has 1 port"),
         ([Node("B", None, ("x",))], {}, "B is linked to 'x', which is no outer name of the bigraph"),
         ([B], {}, "B is linked to edge 0 of 0"),
         ([Node("A", "a"), Node("A", "a")], {}, "node 'a' is there 2 times"),

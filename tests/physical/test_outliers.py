@@ -3,7 +3,7 @@
 import pytest
 
 from physical import box, circle, distance, point
-from physical.outliers import all_swapped, is_swapped, outliers
+from physical.outliers import all_swapped, is_swapped, lonely_points, outliers
 
 BAY = {
     "bay0": box((37.1, -8.6), (37.0, -8.7)),
@@ -79,3 +79,26 @@ def test_a_world_far_out_at_sea_that_exchanged_is_on_a_coast_was_probably_swappe
     assert all_swapped([point(0.0, -30.0)], []) == ""  # exchanged it is as far out
     assert all_swapped([point(10.0, 54.0), point(30.0, 54.0)], []) == ""  # too wide for one place
     assert all_swapped([], []) == ""
+
+
+def test_a_point_a_degree_off_is_lonely_and_what_lies_within_or_near_something_is_not():
+    typed = point(38.05, -8.65)
+    found = lonely_points({**BAY, "uav1": typed})
+    assert found == {"uav1": min(distance(typed, each) for each in BAY.values())}
+    assert found["uav1"] == pytest.approx(100_000, rel=0.02)
+    assert lonely_points({**BAY, "far0": circle((38.05, -8.65), 900)}) == {}  # a far place may be meant
+    assert lonely_points({**BAY, "far0": circle((38.05, -8.65), 900), "uav1": typed}) == {}
+    assert lonely_points({"here": point(37.0, -8.0), "there": point(38.0, -8.0)}) == {}
+    sea = box((39.0, -7.0), (36.0, -10.0))
+    assert lonely_points({"sea0": sea, "uav0": point(37.5, -8.5)}) == {}
+    assert lonely_points({"sea0": sea, "uav0": point(39.6, -8.5)}) == {}  # the sea reaches as far
+
+
+def test_both_sides_of_the_antimeridian_are_near_for_points_too():
+    here = {"east0": circle((-17.0, 179.95), 900), "uav0": point(-17.0, -179.95)}
+    assert lonely_points(here) == {}
+
+
+def test_the_points_of_a_large_world_are_not_compared():
+    ships = {number: point(37.0 + number / 1e5, -8.0) for number in range(1_001)}
+    assert lonely_points({**ships, "x": point(39.0, -8.0)}) == {}

@@ -173,7 +173,7 @@ def test_a_geojson_file_is_read_beside_the_mission(tmp_path):
     assert mission.initial.structure.logical.parent("tug0") == "harbour0"
     assert mission.initial.structure.logical.links("tug0") == ("ais",)
     one = elaborated(text.replace("Vessel }", "Vessel limit 1 }").replace("tug0", "harbour0"), tmp_path)
-    assert one.notes == ("of the 2 entities in harbour.geojson the first 1 are in the world",)
+    assert one.notes == ("1 of the 2 entities in harbour.geojson is in the world: the first",)
 
 
 def test_a_recording_is_read_as_of_a_time():

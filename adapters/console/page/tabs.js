@@ -1,5 +1,5 @@
 /** The panels under the cards; on a phone, the map and the cards are tabs as well. */
-import { html, useEffect, useRef, useState, useWatched } from "./ui.js";
+import { html, Tabs, useEffect, useState, useWatched } from "./ui.js";
 import { Actions } from "./actions.js";
 import { Bigraph } from "./bigraph.js";
 import { Agents, Steps } from "./lanes.js";
@@ -30,20 +30,9 @@ export const openTab = (tab, phone) => (!phone && AREAS.some(([key]) => key === 
 
 export function TabList({ app, phone }) {
   const tab = openTab(useWatched(app.tab), phone);
-  const list = useRef(null);
   const tabs = phone ? [...AREAS, ...PANELS] : PANELS;
-  const go = (event) => {
-    const step = { ArrowRight: 1, ArrowLeft: -1 }[event.key];
-    if (!step) return;
-    event.preventDefault();
-    const at = tabs.findIndex(([key]) => key === tab);
-    app.tab.set(tabs[(at + step + tabs.length) % tabs.length][0]);
-    requestAnimationFrame(() => list.current?.querySelector("[aria-selected=true]")?.focus());
-  };
-  return html`<div role="tablist" class="tabs" ref=${list} aria-label="Panels" onKeyDown=${go}>
-    ${tabs.map(([key, title]) => html`<button type="button" role="tab" key=${key} id=${`tab-${key}`} aria-controls=${AREAS.some(([each]) => each === key) ? `area-${key}` : "panel"}
-      aria-selected=${String(key === tab)} tabindex=${key === tab ? 0 : -1} onClick=${() => app.tab.set(key)}>${title}</button>`)}
-  </div>`;
+  const panelOf = (key) => (AREAS.some(([each]) => each === key) ? `area-${key}` : "panel");
+  return html`<${Tabs} label="Panels" tabs=${tabs} chosen=${tab} choose=${(key) => app.tab.set(key)} panelOf=${panelOf} />`;
 }
 
 export function Panel({ app, phone }) {

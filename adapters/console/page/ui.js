@@ -142,3 +142,21 @@ export const dress = (look, theme) => {
   choose();
   wear();
 };
+
+/** A list of tabs, `[key, title]` each; the arrow keys choose, too. `panelOf(key)` is the id of what a tab shows. */
+export function Tabs({ label, tabs, chosen, choose, panelOf }) {
+  const list = useRef(null);
+  const go = (event) => {
+    const step = { ArrowRight: 1, ArrowLeft: -1 }[event.key];
+    if (!step) return;
+    event.preventDefault();
+    event.stopPropagation();
+    const at = tabs.findIndex(([key]) => key === chosen);
+    choose(tabs[(at + step + tabs.length) % tabs.length][0]);
+    requestAnimationFrame(() => list.current?.querySelector("[aria-selected=true]")?.focus());
+  };
+  return html`<div role="tablist" class="tabs" ref=${list} aria-label=${label} onKeyDown=${go}>
+    ${tabs.map(([key, title]) => html`<button type="button" role="tab" key=${key} id=${`tab-${key}`} aria-controls=${panelOf(key)}
+      aria-selected=${String(key === chosen)} tabindex=${key === chosen ? 0 : -1} onClick=${() => choose(key)}>${title}</button>`)}
+  </div>`;
+}

@@ -49,7 +49,7 @@ def of_verdict(found: TransitionSystem, verdict: ClaimVerdict) -> Decided:
         return Decided(verdict.claim, verdict.outcome)
     path = found.path_to(verdict.state)
     steps = tuple(WitnessStep(found.rules_between(*pair), pair[1]) for pair in pairwise(path))
-    what = f"a shortest run to state {verdict.state}, {len(steps)} steps"
+    what = f"a shortest run to state {verdict.state}, {counted(len(steps), 'step')}"
     return Decided(verdict.claim, verdict.outcome, WitnessRun(steps), what)
 
 

@@ -86,9 +86,8 @@ def sampled(options: Namespace, system: System) -> list[Sample]:
             if is_terminal(watch.stream):
                 rate = len(samples) / (now - begun)
                 left = (options.runs - len(samples)) / rate
-                watch.rewrite(
-                    f"{watch.name}: {len(samples):,} of {options.runs:,} runs, {rate:,.0f}/s, {left:,.0f} s left"
-                )
+                runs = f"{len(samples):,} of {counted(options.runs, 'run')}"
+                watch.rewrite(f"{watch.name}: {runs}, {rate:,.0f}/s, {left:,.0f} s left")
     return samples
 
 
@@ -99,7 +98,7 @@ def lines(
     runs = f"{counted(len(samples), 'run')} of seed {options.seed}"
     yield f"{Path(options.file).name}: {runs}, {seconds:.2f} s"
     if len(samples) < options.runs:
-        yield f"  interrupted: {options.runs - len(samples):,} more were asked for"
+        yield f"  interrupted: {counted(options.runs - len(samples), 'run')} more of those asked for"
     ends = Counter(each.end for each in samples)
     for end, words in (
         (End.STUCK, "ended where no rule applies"),

@@ -209,8 +209,9 @@ def _caution_lines(name: str, cautions: Sequence[Issue], *, everything: bool) ->
         else:
             left[caution.rule].append(caution.line)
     for code, lines in left.items():
-        where = ", ".join(map(str, sorted(set(lines))))
-        yield f"{name}: warning: {code}: {len(lines)} more, in lines {where}: --all"
+        where = sorted(set(lines))
+        listed = f"line{'' if len(where) == 1 else 's'} {', '.join(map(str, where))}"
+        yield f"{name}: warning: {code}: {len(lines)} more, in {listed}: --all"
 
 
 def _tally_lines(

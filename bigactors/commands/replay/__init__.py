@@ -53,6 +53,7 @@ def run(options: Namespace) -> Exit:
     from bigactors.commands.replay.waypoint_export import write_report, write_route
     from bigactors.mission_lookup import variation_of
     from checker import ReplayError, print_loop
+    from physical.wordings import counted
     from semantics.state.printing import print_configuration
 
     if is_foreign(options.trace):
@@ -71,11 +72,12 @@ def run(options: Namespace) -> Exit:
         _tell_breaches(recording)
     say(f"c{len(trace)} = {print_configuration(trace.configurations[-1])}")
     again = f", and {print_loop(trace)}" if trace.loop is not None else ""
-    say(f"{options.trace}: {len(trace)} steps replayed on {found.mission.name}{again}")
+    say(f"{options.trace}: {counted(len(trace), 'step')} replayed on {found.mission.name}{again}")
     if options.report is not None:
         write_report(options.trace, options.report)
     for vehicle, path in options.waypoints:
-        tell(f"{write_route(trace, vehicle, path)} waypoints of {vehicle} written to {path}")
+        written = counted(write_route(trace, vehicle, path), "waypoint")
+        tell(f"{written} of {vehicle} written to {path}")
     return Exit.HOLDS
 
 

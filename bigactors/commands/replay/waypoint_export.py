@@ -12,9 +12,8 @@ from adapters.recording.recorded_tracks import recorded_tracks
 from adapters.recording.recording_reader import is_recording
 from bigactors.commands.console.recorded_history import rules_of
 from bigactors.files import write_text
-from bigactors.mistakes import Mistake
+from bigactors.mistakes import Mistake, near_or_known
 from bigactors.terminal import tell
-from bigraphs.notation.spelling import did_you_mean
 from checker import Trace
 from physical import Geometry, MobilityCommand, Waypoint, write_plan, write_waypoints
 from physical.place_files import PLAN, WAYPOINTS
@@ -38,7 +37,7 @@ def write_route(trace: Trace, vehicle: Name, path: str) -> int:
         raise Mistake("a route is written as one of " + ", ".join(WRITERS), "name the file so", path)
     start = trace.initial
     if vehicle not in start.setting.kinds:
-        hint = did_you_mean(vehicle, start.setting.kinds) or "name a vehicle of the mission"
+        hint = near_or_known(vehicle, start.setting.driven(), "vehicles")
         raise Mistake(f"the mission has no entity '{vehicle:.60}'", hint)
     told = [each for each in _told(trace) if isinstance(each, Waypoint) and each.entity == vehicle]
     if not told:

@@ -27,8 +27,7 @@ from bigactors.commands.run.feeds import cameras_of, feeds_of, poses_for
 from bigactors.commands.run.geofence import fence_of
 from bigactors.commands.run.station_flight import driven, own_station
 from bigactors.installed_plugins import VEHICLES, make_vehicles, require_known
-from bigactors.mistakes import Mistake
-from bigraphs.notation.spelling import did_you_mean
+from bigactors.mistakes import Mistake, near_or_known
 from physical import PhysicalError, PhysicalProperty
 from semantics.state.physical_model import Placed
 from semantics.state.signature import REGION
@@ -38,7 +37,7 @@ MOST_STATIONS = 254
 ROS = "ros"
 SIMULATED = "simulated"
 GROUND = 20.0
-"""The metres above the sea of a simulated vehicle's home."""
+"""The metres above the sea of a simulated vehicle's home; a boat's is at the sea."""
 
 
 def plugins_of(
@@ -109,7 +108,9 @@ def _simulated(craft: Craft, word: str, mission: ElaboratedMission, key: Signing
         hint = f"place it in the world: {craft.entity}: {craft.kind} = point (37.0, -8.6)"
         raise Mistake(f"'{craft.entity}' stands at no point in the mission, so it has no home", hint)
     latitude, longitude = at.geometry.vertices[0]
-    return Vehicle(kinds[word], (latitude, longitude, GROUND), craft.system or 1, signing=key)
+    kind = kinds[word]
+    ground = 0.0 if kind is Kind.BOAT else GROUND
+    return Vehicle(kind, (latitude, longitude, ground), craft.system or 1, signing=key)
 
 
 def _sensor(options: Namespace, mission: ElaboratedMission) -> tuple[Plugin, ...]:
@@ -174,10 +175,7 @@ def _crafts(options: Namespace, mission: ElaboratedMission) -> dict[str, Craft]:
 def _craft(name: str, system: int | None, mission: ElaboratedMission) -> Craft:
     kind = mission.setting.kinds.get(name)
     if kind is None:
-        hint = (
-            did_you_mean(name, mission.setting.kinds)
-            or "give the vehicle the name that it has in the mission"
-        )
+        hint = near_or_known(name, mission.setting.driven(), "vehicles")
         raise Mistake(f"the mission has no entity '{name:.60}'", hint)
     if not mission.setting.signature[kind].driven:
         raise Mistake(
@@ -272,7 +270,7 @@ def _stations(options: Namespace, mission: ElaboratedMission) -> Stations:
     if unknown:
         raise Mistake(
             f"no channel 'control:{unknown[0]:.40}' is in the mission",
-            did_you_mean(unknown[0], ids) or "see its channels",
+            near_or_known(unknown[0], ids, "stations"),
         )
     if not ids:
         return Stations({"this run": 255}, ("this run",), in_mission=False)

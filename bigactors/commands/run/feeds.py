@@ -26,9 +26,8 @@ from bigactors.arguments.values import LIVING
 from bigactors.files import read_bytes
 from bigactors.installed_plugins import FEEDS as INSTALLED
 from bigactors.installed_plugins import find_detector, make_feed, require_known
-from bigactors.mistakes import Mistake
+from bigactors.mistakes import Mistake, near_or_known
 from bigactors.worlds import area_within
-from bigraphs.notation.spelling import did_you_mean
 from physical import Geometry
 from specs.elaboration import ElaboratedMission
 
@@ -125,7 +124,7 @@ def _told(options: Namespace, mission: ElaboratedMission) -> dict[str, frozenset
     told = dict(options.kinds)
     known = mission.setting.signature.kinds
     for kind in sorted(told.get("detections", frozenset()) - known.keys()):
-        hint = did_you_mean(kind, known) or f"its kinds are {', '.join(known)}"
+        hint = near_or_known(kind, known, "kinds")
         raise Mistake(f"the mission has no kind '{kind:.60}' that could be detected", hint)
     return told
 

@@ -45,6 +45,7 @@ from bigactors.terminal import flying_output, paint, say, tell
 from bigactors.vehicle_lines import situation, standing
 from bigactors.verdict_files import Licence, find_verdict, licence_for
 from physical import PhysicalError
+from physical.wordings import counted
 from semantics.state.setting import Control, Scheduler
 from specs.elaboration import ElaboratedMission, Variation
 
@@ -127,7 +128,7 @@ def conclude(ending: Ending, *, broken: bool, property_broken: bool = False) -> 
     """Print the end of a run, and return its exit code."""
     what = [*(["an assumption"] if broken else []), *(["a property"] if property_broken else [])]
     breach = f"; {' and '.join(what)} {'were' if len(what) > 1 else 'was'} broken" if what else ""
-    say(f"{ending.reason} after {ending.state.number} steps{breach}{standing(ending.state)}")
+    say(f"{ending.reason} after {counted(ending.state.number, 'step')}{breach}{standing(ending.state)}")
     if what:
         return Exit.VIOLATED
     overrides = ending.state.overrides

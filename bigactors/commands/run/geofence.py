@@ -53,7 +53,7 @@ def _around(mission: ElaboratedMission) -> Geometry | None:
 def _grounds(mission: ElaboratedMission) -> Iterator[Geometry]:
     """Yield the vehicles' first placements, and all possible placements of their containers."""
     setting, physical = mission.setting, mission.initial.structure.physical
-    driven = [name for name, kind in setting.kinds.items() if setting.signature[kind].driven]
+    driven = setting.driven()
     for vehicle in driven:
         at = physical.position(vehicle)
         if at is not None:

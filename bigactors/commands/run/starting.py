@@ -118,11 +118,15 @@ async def check_start(live: LiveRun, before: StartChecks) -> None:
 # --- the list -----------------------------------------------------------------------------------------
 
 
+def _held(count: int) -> str:
+    return "1 property holds" if count == 1 else f"{count} properties hold"
+
+
 def _items(live: LiveRun, before: StartChecks, *, checked: bool) -> Iterator[Item]:
     """Yield the checks in their order."""
     count = before.verdict
     what = "no verdict: nothing was verified of this run" if count is None else "the mission is verified"
-    yield _item(what, detail="--unverified" if count is None else f"{count} properties hold")
+    yield _item(what, detail="--unverified" if count is None else _held(count))
     for vehicle in sorted(live.plan.vehicles):
         said = live.inbox.statuses.get(vehicle)
         heard = vehicle in live.state.sightings.newest

@@ -18,9 +18,8 @@ from adapters.stations.peers import Peers, read_peers
 from adapters.stations.station_plugin import NAME, Sharing
 from bigactors.files import file_stem
 from bigactors.mission_lookup import digest_of
-from bigactors.mistakes import Mistake, unreadable
+from bigactors.mistakes import Mistake, near_or_known, unreadable
 from bigactors.recordings import Resumed
-from bigraphs.notation.spelling import did_you_mean
 from physical import PhysicalError
 from semantics.state.parcel_serialization import parcel_json
 from semantics.state.station_partition import Parting, parted, took_cell
@@ -89,9 +88,7 @@ def company_of(options: Namespace, mission: ElaboratedMission, before: Resumed |
 def driven(mission: ElaboratedMission) -> set[str]:
     """Return the vehicles of a mission: the entities that exist and are of a driven kind."""
     setting, physical = mission.setting, mission.initial.structure.physical
-    return {
-        name for name, kind in setting.kinds.items() if setting.signature[kind].driven and name in physical
-    }
+    return {name for name in setting.driven() if name in physical}
 
 
 def _obeying(mission: ElaboratedMission) -> dict[str, bool]:
@@ -115,7 +112,7 @@ def _check_hosts(peers: Peers, mission: ElaboratedMission, place: str) -> None:
     for host, station in peers.hosts.items():
         if host not in kinds:
             what = "station" if host == station else f"host of [{station}]"
-            hint = did_you_mean(host, kinds) or "stations and hosts are called as in the mission"
+            hint = near_or_known(host, map(alpha.host, alpha.names()), "hosts of bigActors")
             raise Mistake(f"the mission has no host '{host:.60}', a {what} here", hint, place)
     for agent in alpha.names():
         host = alpha.host(agent)

@@ -6,6 +6,7 @@ import random
 from collections.abc import Iterator
 from copy import copy
 from dataclasses import dataclass, field
+from itertools import repeat
 from typing import TYPE_CHECKING, NamedTuple
 
 from checker import Step, Trace
@@ -51,6 +52,22 @@ class OneRun:
 
             self._dated.append(DatedRun(self.initial))
 
+    @classmethod
+    def following(cls, trace: Trace) -> OneRun:
+        """Return a run that begins with the steps of a trace; without times if the trace has no dates."""
+        run = cls(trace.initial)
+        if run.is_timed and not trace.dates:
+            run._dated.clear()
+        for step, date in zip(trace.steps, trace.dates or repeat(None), strict=False):
+            run._add(step, date)
+            run.shown.append(())
+        return run
+
+    @property
+    def is_timed(self) -> bool:
+        """Whether its steps have dates."""
+        return bool(self._dated)
+
     @property
     def at(self) -> Configuration:
         """The current configuration."""
@@ -79,16 +96,19 @@ class OneRun:
             UntimelyError: The clocks do not allow the step at that date.
         """
         transition = choice.transition
+        alike = [each.target for each in self.expansion().transitions if each.label == transition.label]
+        step = Step(transition.label, alike.index(transition.target), transition.target)
+        self._add(step, choice.earliest if date is None else date)
+        self.shown.append(transition.shown)
+
+    def _add(self, step: Step, date: int | None) -> None:
         if self._dated:
-            date = choice.earliest if date is None else date
             assert date is not None
             run = copy(self._dated[-1])
-            run.take(transition.label, transition.target, date)
+            run.take(step.label, step.target, date)
             self._dated.append(run)
             self.dates.append(date)
-        alike = [each.target for each in self.expansion().transitions if each.label == transition.label]
-        self.taken.append(Step(transition.label, alike.index(transition.target), transition.target))
-        self.shown.append(transition.shown)
+        self.taken.append(step)
 
     def take_by_chance(self, chance: random.Random) -> bool:
         """Take one of the steps at random, at a random one of its dates; return whether there was a step."""

@@ -2,17 +2,19 @@
  * The explorer: a run step by step, the steps that are possible next, and what is true here.
  *
  * `ask(request)` returns a promise of an answer of `bigactors.studio.exploration`, or of a run inside a file. `state` is
- * what to show: `{run, at}` or `{trace}`; another object shows another run. `onLook(answer)` gets each answer that is
+ * what to show: `{run, at}`, `{trace}` or `{given}`; another object shows another run. `onLook(answer)` gets each answer that is
  * shown: `view` has the sections that the shared map and bigraph draw, `run` and `at` are for the address of the page.
+ * `graph` is a view of all runs, beside which the lanes are a tab.
  */
-import { html, useEffect, useLayoutEffect, useRef, useState } from "/parts/ui.js";
+import { html, Tabs, useEffect, useLayoutEffect, useRef, useState } from "/parts/ui.js";
+import { counted } from "/parts/map/words.js";
 
 const MOST_ROWS = 400;
 const PAUSE = 1100; // milliseconds between two steps of a playing run
 const GAP = { least: 18, most: 120 }; // pixels of the shortest and of the longest time between two steps
 const NOTHING = {};
 
-export function Explorer({ ask, state = NOTHING, onLook = () => {}, keys = null }) {
+export function Explorer({ ask, state = NOTHING, onLook = () => {}, keys = null, graph = null }) {
   const [look, setLook] = useState(null);
   const [problem, setProblem] = useState("");
   const [playing, setPlaying] = useState(false);
@@ -32,17 +34,15 @@ export function Explorer({ ask, state = NOTHING, onLook = () => {}, keys = null 
     }
     return answer.error ? null : answer;
   };
-  const tokens = look?.run ? look.run.split(".") : [];
   const last = look?.length ?? 0;
-  const here = look?.still || !look ? look?.run ?? "" : tokens.slice(0, look.at).join(".");
   const go = (at) => {
     wanted.current = Math.max(0, Math.min(last, at));
     return send({ ask: "run", run: look.run, at: wanted.current });
   };
   const move = (by) => go(wanted.current + by);
   const take = (token) => {
-    if (tokens[look.at] === token) return move(1);
-    return send({ ask: "run", run: [...tokens.slice(0, look.at), token].join(".") });
+    if (look.next === token) return move(1);
+    return send({ ask: "run", run: [look.here, token].filter(Boolean).join(".") });
   };
   const play = () => {
     if (!playing && wanted.current === last) go(0);
@@ -50,7 +50,8 @@ export function Explorer({ ask, state = NOTHING, onLook = () => {}, keys = null 
   };
 
   useEffect(() => {
-    send(state.trace ? { ask: "load", trace: state.trace } : { ask: "run", run: state.run ?? "", at: state.at });
+    const { trace, given, run = "", at } = state;
+    send(trace ? { ask: "load", trace } : given ? { ask: "load", given } : { ask: "run", run, at });
   }, [state]);
   useEffect(() => {
     if (!playing) return undefined;
@@ -80,12 +81,26 @@ export function Explorer({ ask, state = NOTHING, onLook = () => {}, keys = null 
     ${look && html`
       <${Story} look=${look} go=${go} />
       <${Controls} look=${look} go=${go} move=${move} playing=${playing} play=${play} />
-      ${!look.still && html`<${Wishes} look=${look} here=${here} send=${send} />`}
-      ${look.choices && html`<${Choices} key=${`${look.run} ${look.at}`} look=${look} take=${take} />`}
-      <${Values} values=${look.values} />
-      <${Lanes} look=${look} go=${go} />
-      <${Parts} parts=${look.parts} />`}
+      ${!look.still && html`<${Wishes} look=${look} send=${send} />`}
+      <div class=${graph ? "columns" : "column"}>
+        <div class="possible">
+          ${look.choices && html`<${Choices} key=${`${look.run} ${look.at}`} look=${look} take=${take} />`}
+          <${Values} values=${look.values} />
+          ${graph && html`<${Parts} parts=${look.parts} />`}
+        </div>
+        <${Runs} look=${look} go=${go} graph=${graph} />
+      </div>
+      ${!graph && html`<${Parts} parts=${look.parts} />`}`}
   </div>`;
+}
+
+/** The run in lanes, or the graph of all runs. */
+function Runs({ look, go, graph }) {
+  const [tab, setTab] = useState("lanes");
+  const lanes = html`<${Lanes} look=${look} go=${go} />`;
+  if (!graph) return lanes;
+  return html`<div class="runs"><${Tabs} label="Runs" tabs=${[["lanes", "Run"], ["graph", "Graph"]]} chosen=${tab} choose=${setTab} panelOf=${() => "runs"} />
+    <div role="tabpanel" id="runs" aria-labelledby=${`tab-${tab}`}>${tab === "graph" ? graph : lanes}</div></div>`;
 }
 
 /** The causes of what the run ends in, each with a link to its step. */
@@ -113,14 +128,14 @@ function Controls({ look, go, move, playing, play }) {
 const wordsOf = (look) => look.steps[look.at - 1]?.cause ?? look.steps[look.at - 1]?.words ?? "the first configuration";
 
 /** What an exploration does at a wish: a walk at random, a search, and traces. */
-function Wishes({ look, here, send }) {
+function Wishes({ look, send }) {
   const [where, setWhere] = useState("");
   const [count, setCount] = useState(10);
   const seek = (event) => {
     event.preventDefault();
-    send({ ask: "goto", run: here, where });
+    send({ ask: "goto", run: look.here, where });
   };
-  const walk = () => send({ ask: "random", run: here, count, seed: Math.floor(Math.random() * 2 ** 31) });
+  const walk = () => send({ ask: "random", run: look.here, count, seed: Math.floor(Math.random() * 2 ** 31) });
   const save = async () => {
     const answer = await send({ ask: "save", run: look.run });
     if (!answer) return;
@@ -128,21 +143,14 @@ function Wishes({ look, here, send }) {
     link.click();
     URL.revokeObjectURL(link.href);
   };
-  const load = async (event) => {
+  const load = (event) => {
     const [file] = event.currentTarget.files;
-    if (!file) return;
-    let trace = null;
-    try {
-      trace = JSON.parse(await file.text());
-    } catch {
-      // the answer says that this is no trace
-    }
-    send({ ask: "load", trace });
+    if (file) send({ ask: "load", file });
   };
   return html`<div class="wishes">
     <form onSubmit=${seek}><input type="text" required value=${where} placeholder="uav0 in gate0" aria-label="go to where this is true" onInput=${(event) => setWhere(event.currentTarget.value)} /><button type="submit">Go to where</button></form>
     <span><input type="number" min="1" max="1000" value=${count} aria-label="steps at random" onInput=${(event) => setCount(Number(event.currentTarget.value))} /><button type="button" onClick=${walk}>Steps at random</button></span>
-    <span><button type="button" onClick=${save}>Save the trace</button><label class="button">Open a trace<input type="file" accept=".json" onChange=${load} /></label></span>
+    <span><button type="button" onClick=${save}>Save the trace</button><label class="button" title="a trace in JSON, or a recording">Open a run<input type="file" accept=".json,.mcap" onChange=${load} /></label></span>
   </div>`;
 }
 
@@ -229,12 +237,12 @@ export function Lanes({ look, go }) {
       <thead><tr><th scope="col">c</th>${look.lanes.map((name, lane) => html`<th scope="col" key=${name}>${look.hosts[lane]}</th>`)}</tr></thead>
       <tbody>
         ${begin === 0 && html`<tr aria-current=${look.at === 0 ? "step" : null} onClick=${() => go(0)}><th scope="row"><button type="button">c0</button></th>${look.lanes.map((name) => html`<td key=${name}></td>`)}</tr>`}
-        ${begin > 0 && html`<tr><td class="several" colspan=${look.lanes.length + 1}>⋯ ${begin.toLocaleString("en")} rows before</td></tr>`}
+        ${begin > 0 && html`<tr><td class="several" colspan=${look.lanes.length + 1}>⋯ ${counted(begin, "row")} before</td></tr>`}
         ${shown.map((row) => html`<tr key=${row.number ?? `f${row.first}`} data-step=${row.number} ...${gapOf(lapses[row.number - 1] ?? 0)}
           class=${[found.has(row.number) ? "match" : "", look.steps[row.number - 1]?.cause ? "guilty" : "", lapses[row.number - 1] > 0 ? "later" : ""].join(" ")}
           aria-current=${row === rows[current] ? "step" : null} onClick=${(event) => row.number && !event.target.closest("td button") && go(row.number)}>
           <th scope="row" data-lapse=${lapseWords(lapses[row.number - 1])}>${row.number && html`<button type="button">c${row.number}</button><small>${look.steps[row.number - 1].date ?? ""}</small>`}</th>${cell(row)}</tr>`)}
-        ${begin + MOST_ROWS < rows.length && html`<tr><td class="several" colspan=${look.lanes.length + 1}>⋯ ${(rows.length - begin - MOST_ROWS).toLocaleString("en")} rows after</td></tr>`}
+        ${begin + MOST_ROWS < rows.length && html`<tr><td class="several" colspan=${look.lanes.length + 1}>⋯ ${counted(rows.length - begin - MOST_ROWS, "row")} after</td></tr>`}
       </tbody></table>${look.end && html`<p class="loop"><button type="button" onClick=${() => go(look.loop)}>${look.end}</button></p>`}</div>
   </section>`;
 }

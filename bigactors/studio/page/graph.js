@@ -3,6 +3,7 @@
  * is bold, a bad configuration is red, and a chain of configurations without another way is one edge.
  */
 import { html, useEffect, useState } from "/parts/ui.js";
+import { counted } from "/parts/map/words.js";
 
 const ACROSS = 46;
 const DOWN = 58;
@@ -11,22 +12,19 @@ const SWEEPS = 6;
 
 /** `ask` and `run` as of the explorer; `onGo(run)` is called with the address of a chosen configuration. */
 export function Graph({ ask, run, at, onGo }) {
-  const [open, setOpen] = useState(false);
   const [graph, setGraph] = useState(null);
   const [problem, setProblem] = useState("");
   useEffect(() => {
-    if (!open) return undefined;
     let wanted = true;
     ask({ ask: "graph", run }).then(
       (answer) => wanted && (answer.error ? setProblem(answer.error) : (setProblem(""), setGraph(answer))),
       (error) => wanted && setProblem(error.message),
     );
     return () => (wanted = false);
-  }, [open, run]);
+  }, [run]);
   return html`<section class="graph" aria-label="Graph">
-    <button type="button" aria-expanded=${String(open)} onClick=${() => setOpen(!open)}>Graph</button>
-    ${open && problem && html`<p class="problem" role="alert">${problem}</p>`}
-    ${open && graph && html`<output>${graph.whole ? `${graph.count} configurations` : `the ${graph.count} configurations around the run`}${graph.nodes.length < graph.count ? `, ${graph.nodes.length} drawn: chains are folded` : ""}${graph.timed ? ", each step as early as it may be" : ""}</output>
+    ${problem && html`<p class="problem" role="alert">${problem}</p>`}
+    ${graph && html`<output>${graph.whole ? counted(graph.count, "configuration") : `${counted(graph.count, "configuration")} around the run`}${graph.nodes.length < graph.count ? `, ${graph.nodes.length} drawn: chains are folded` : ""}${graph.timed ? ", each step as early as it may be" : ""}</output>
       <${Picture} graph=${graph} at=${at} onGo=${onGo} />`}
   </section>`;
 }
@@ -40,7 +38,7 @@ function Picture({ graph, at, onGo }) {
     ${graph.nodes.map((node) => {
       const [x, y] = places.get(node.id);
       const go = () => onGo(node.run);
-      const called = `${node.at === undefined ? "" : `c${node.at}, `}${node.depth} steps from the start${node.bad ? ", bad" : ""}`;
+      const called = `${node.at === undefined ? "" : `c${node.at}, `}${counted(node.depth, "step")} from the start${node.bad ? ", bad" : ""}`;
       return html`<g key=${node.id} class=${`node ${node.bad ? "bad" : ""} ${onRun.has(node.id) ? "run" : ""} ${node.at === at ? "here" : ""}`} role="button" tabindex="0" aria-label=${called} transform=${`translate(${x} ${y})`}
         onClick=${go} onKeyDown=${(event) => event.key === "Enter" && go()}><circle r="9"></circle>${node.at !== undefined && html`<text y="3.5" text-anchor="middle">${node.at}</text>`}<title>${called}</title></g>`;
     })}
@@ -52,7 +50,7 @@ function wordsOf({ words, folded }) {
   const counts = new Map();
   for (const each of words) counts.set(each, (counts.get(each) ?? 0) + 1);
   const lines = [...counts].slice(0, 12).map(([text, count]) => (count > 1 ? `${text} ×${count}` : text));
-  return [...(folded ? [`${folded + 1} steps`] : []), ...lines, ...(counts.size > 12 ? ["…"] : [])].join("\n");
+  return [...(folded ? [counted(folded + 1, "step")] : []), ...lines, ...(counts.size > 12 ? ["…"] : [])].join("\n");
 }
 
 /** The place of each node: layers by distance from the start, each in an order with few crossings. */

@@ -11,6 +11,7 @@ import { marksOf, runOf, Verdicts } from "./verdicts.js";
 const PAUSE = 600; // milliseconds without a change before the text is checked
 
 const MOST_FILE = 4_000_000; // bytes of a dropped file
+const MOST_RUN = 20_000_000; // bytes of the file of a run
 
 const fragment = () => new URLSearchParams(location.hash.slice(1));
 const token = () => fragment().get("token") ?? "";
@@ -34,6 +35,8 @@ class Studio {
   wanted = new Watched(null);
   /** The run that the explorer shows; the address has it, so that a link or a reload comes back to it. */
   shown = new Watched({ run: fragment().get("run") ?? "", at: Number(fragment().get("at") ?? 0) });
+  /** The request that loads the run from a file, if there is one. */
+  loaded = null;
   /** Whether the chosen entity has handles on the map. */
   drawing = new Watched(false);
   /** The kinds of the text, and what it places: `{kinds, shapes}`. */
@@ -85,6 +88,7 @@ class Studio {
     document.title = `${frame.name}: bigactors studio`;
     this.beginning.set(null);
     this.problem.set("");
+    if (frame.given) this.loaded = { ask: "load", given: true };
     this.opened.set(frame);
   }
 
@@ -110,16 +114,28 @@ class Studio {
   #send() {
     this.connection.send("text", { text: this.editor.text, number: ++this.number });
     this.verdicts.set({ ...this.verdicts.value, state: "running" });
-    this.wanted.set({ ...this.shown.value });
+    this.wanted.set(this.number === 1 && this.loaded && !this.shown.value.run ? { given: true } : { ...this.shown.value });
     if (this.drawing.value) this.#seeShapes();
   }
 
   /** Ask the exploration of the newest text; where a run is none of it any more, show its beginning. */
   ask = async (request) => {
-    const answer = await this.connection.ask("explore", { request });
-    const kept = request.ask === "run" && answer.error && request.run === this.shown.value.run && request.run !== "";
-    return kept ? this.connection.ask("explore", { request: { ask: "run", run: "" } }) : answer;
+    if (request.file?.size > MOST_RUN) return { error: `${request.file.name} is over 20 MB: bigactors studio FILE --trace ${request.file.name} shows it` };
+    const asked = request.file ? { ask: "load", content: await base64(request.file) } : request;
+    const answer = await this.#explore(asked);
+    if (asked.ask === "load" && !answer.error) this.loaded = asked;
+    const kept = asked.ask === "run" && answer.error && asked.run === this.shown.value.run && asked.run !== "";
+    return kept ? this.#explore({ ask: "run", run: "" }) : answer;
   };
+
+  /** Ask the exploration; a new one takes the run from a file first, if the asked run begins with its steps. */
+  async #explore(request) {
+    const ask = (each) => this.connection.ask("explore", { request: each });
+    const answer = await ask(request);
+    if (!answer.error || !request.run?.startsWith("~") || !this.loaded) return answer;
+    const again = await ask(this.loaded);
+    return again.error ? again : ask(request);
+  }
 
   /** Show the configuration that the explorer looks at, and have the address name it. */
   looked = ({ view, run, at }) => {
@@ -360,8 +376,8 @@ function Exploring({ app }) {
   const wanted = useWatched(app.wanted);
   const { run, at } = useWatched(app.shown);
   return wanted && html`<h2 class="unseen">Explorer</h2>
-    <${Explorer} ask=${app.ask} state=${wanted} onLook=${app.looked} />
-    <${Graph} ask=${app.ask} run=${run} at=${at} onGo=${(there) => app.wanted.set({ run: there })} />`;
+    <${Explorer} ask=${app.ask} state=${wanted} onLook=${app.looked}
+      graph=${html`<${Graph} ask=${app.ask} run=${run} at=${at} onGo=${(there) => app.wanted.set({ run: there })} />`} />`;
 }
 
 function MapTools({ app }) {

@@ -1,8 +1,8 @@
 /** The verdicts on the newest text: each property with its outcome, its counts and the ways to its runs. */
 import { html, useWatched } from "/parts/ui.js";
+import { counted } from "/parts/map/words.js";
 
 export const MARKS = { holds: "✓", violated: "✗", incomplete: "?" };
-const count = (number, noun) => `${number.toLocaleString("en")} ${noun}${number === 1 ? "" : "s"}`;
 
 /** The margin of the text: verdicts at their properties, and marks at unreached lines. */
 export function marksOf({ properties, coverage }) {
@@ -21,19 +21,19 @@ export function Verdicts({ app }) {
     <p class=${state === "done" ? "" : "quiet"} role="status">${title}</p>
     ${state === "refused" && html`<pre class="refused">${refused}</pre>`}
     ${report && state !== "refused" && html`<ul class=${state === "running" ? "old" : ""}>${report.properties.map((each) => html`<${Verdict} key=${each.name} app=${app} about=${each} />`)}</ul>
-      ${report.coverage?.complete && report.coverage.gaps.length > 0 && html`<p class="late">┆ ${count(report.coverage.gaps.length, "part")} of the text ${report.coverage.gaps.length === 1 ? "is" : "are"} never reached</p>`}
+      ${report.coverage?.complete && report.coverage.gaps.length > 0 && html`<p class="late">┆ ${counted(report.coverage.gaps.length, "part")} of the text ${report.coverage.gaps.length === 1 ? "is" : "are"} never reached</p>`}
       ${report.notes.map((note) => html`<p class="quiet" key=${note}>${note}</p>`)}`}
   </section>`;
 }
 
 function summaryOf({ complete, bounds, configurations, transitions, seconds }) {
-  return `${count(configurations, "configuration")}, ${count(transitions, "transition")}${complete ? "" : `, then stopped: ${bounds.join(", ")}`} · ${seconds.toFixed(1)} s`;
+  return `${counted(configurations, "configuration")}, ${counted(transitions, "transition")}${complete ? "" : `, then stopped: ${bounds.join(", ")}`} · ${seconds.toFixed(1)} s`;
 }
 
 function Verdict({ app, about }) {
   const { name, verdict, violations, count: times, examined, note, remarks, line } = about;
   const run = runOf(about);
-  const sizes = verdict === "violated" ? count(times, "violation") : examined ? `examined ${examined.toLocaleString("en")}` : "";
+  const sizes = verdict === "violated" ? counted(times, "violation") : examined ? `examined ${examined.toLocaleString("en")}` : "";
   return html`<li class=${`verdict-${verdict}`}>
     <b class="mark" aria-label=${verdict}>${MARKS[verdict]}</b>
     <div><button type="button" class="name" disabled=${line < 1} onClick=${() => app.editor.goTo(line)}>${name}</button> <span class="quiet">${[sizes, note].filter(Boolean).join(" · ")}</span>

@@ -7,7 +7,7 @@ from typing import Final
 
 from bigraphs.algebra import lean
 from bigraphs.bigraph import Bigraph
-from bigraphs.errors import NotationError
+from bigraphs.errors import NotationError, counted
 from bigraphs.notation.bgm import property_elaboration
 from bigraphs.notation.bgm.parser import parse_bgm
 from bigraphs.notation.bgm.syntax import (
@@ -200,7 +200,7 @@ class _Reading:
             if hole.index not in seen:
                 self.add("site", f"${hole.index} is not in the redex", hole.offset, 2)
         if len(redex) != len(reactum):
-            message = f"the redex has {len(redex)} regions, the reactum {len(reactum)}"
+            message = f"the redex has {counted(len(redex), 'region')}, the reactum {len(reactum)}"
             self.add("rule", message, line.offset)
         return len(self.findings) == before
 

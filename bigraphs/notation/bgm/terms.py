@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
 from bigraphs.bigraph import Bigraph, Link, Node, Place, assemble
+from bigraphs.errors import counted
 from bigraphs.notation.bgm.syntax import Hole, Prefix, Wide
 from bigraphs.notation.big.file_mistakes import Findings
 from bigraphs.notation.big.syntax import MAX_SIZE
@@ -67,7 +68,9 @@ class Terms:
             return ()
         arity = self.signature[kind].arity or 0
         if term.ports and len(term.ports) != arity:
-            message = f"'{term.control}' has {arity} ports, this has {len(term.ports)} names"
+            message = (
+                f"'{term.control}' has {counted(arity, 'port')}, this has {counted(len(term.ports), 'name')}"
+            )
             self.findings.add("arity", message, at, "write '-' for a port that is not linked")
         return term.ports or (None,) * arity
 

@@ -7,7 +7,7 @@ from typing import Final, Literal, TypeAlias
 
 from bigraphs import algebra
 from bigraphs.bigraph import Bigraph
-from bigraphs.errors import BigraphError
+from bigraphs.errors import BigraphError, counted
 from bigraphs.interface import Interface
 from bigraphs.notation.big.declarations import BigDeclaration, ReactDeclaration
 from bigraphs.notation.big.scope import NESTED, CallFrame, FileScope
@@ -245,10 +245,10 @@ class Evaluation:
                 "interface", "'by' takes a placing, without nodes and names", share.by.span, frame, hint
             )
         elif len(by.sites) != what.regions:
-            found = f"this places {len(by.sites)} regions, and {what.regions} are shared"
+            found = f"this places {counted(len(by.sites), 'region')}, and {what.regions} are shared"
             self.scope.add("interface", found, share.by.span, frame, "list places for each region")
         elif by.regions != len(where.sites):
-            found = f"this has {len(where.sites)} sites, and the placing is over {by.regions}"
+            found = f"this has {counted(len(where.sites), 'site')}, and the placing is over {by.regions}"
             self.scope.add("interface", found, share.where.span, frame)
         elif lacking := sorted({name for name, _ in where.inner_links} - set(what.outer_names)):
             found = f"this needs the name '{lacking[0]}', which the shared bigraph lacks"

@@ -45,6 +45,7 @@ from checker.limits import look
 from checker.properties.critical_path import way_to
 from checker.properties.inspections import InTime
 from checker.properties.longest_stays import NEVER
+from physical.wordings import counted
 from semantics.properties.property import Property
 from semantics.properties.propositions import Proposition
 from semantics.state.configuration import Configuration, Transition
@@ -74,7 +75,7 @@ class ZoneTimes:
     @property
     def searched(self) -> str:
         """The size of the searched state space, in words."""
-        return f"{self.search.count:,} zones" + (" of local time" if self.search.is_local else "")
+        return counted(self.search.count, "zone") + (" of local time" if self.search.is_local else "")
 
     @property
     def situations(self) -> Sequence[TimedView]:

@@ -176,6 +176,8 @@ def test_a_card_has_the_newest_altitude_and_the_last_change_of_authority(tmp_pat
     assert says(card("a"), altitude=120, height=None, authority=["gcs0"], handed=None)
     handed = {"time": 1003.0, "from": ["gcs0"], "to": ["gcs1"]}
     assert says(card("b", later), altitude=121.0, authority=["gcs1"], handed=handed)
+    boat = ("status", 1003.0, STATUS | {"height": None, "surface": True})
+    assert says(card("d", boat), altitude=None, height=None)
     unsure = card("c", *(("status", *each) for each in statuses), later)
     assert unsure["handed"] == handed | {"time": 1004.0}
 

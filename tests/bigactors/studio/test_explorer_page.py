@@ -22,8 +22,8 @@ import { Graph } from "/studio/graph.js";
 const ask = async (request) => JSON.parse(await window.answer(JSON.stringify(request)));
 const onLook = (look) => { window.look = look; window.show({ run: look.run, at: look.at }); };
 let state = JSON.parse(decodeURIComponent(location.hash.slice(1) || "{}"));
-window.show = (look) => render(html`<${Explorer} ask=${ask} state=${state} onLook=${onLook} />
-  <${Graph} ask=${ask} run=${look.run} at=${look.at} onGo=${go} />`, document.querySelector("main"));
+window.show = (look) => render(html`<${Explorer} ask=${ask} state=${state} onLook=${onLook}
+  graph=${html`<${Graph} ask=${ask} run=${look.run} at=${look.at} onGo=${go} />`} />`, document.querySelector("main"));
 const go = (run) => window.show((state = { run }));
 window.show({ run: state.run ?? "", at: state.at ?? 0 });
 </script>"""
@@ -102,7 +102,7 @@ def test_with_times_the_moment_of_a_step_is_chosen_and_the_saved_trace_replays(o
     page.get_by_label("seconds at which: eye").fill("10")
     page.get_by_role("button", name="eye on uav0 asks").click()
     expect(page, ".controls output").to_have_text("c1 of c1 · 0:10")
-    page.get_by_role("button", name="Graph").click()
+    page.get_by_role("tab", name="Graph").click()
     expect(page, ".graph output").to_contain_text(", each step as early as it may be")
     with page.expect_download() as saved:
         page.get_by_role("button", name="Save the trace").click()
@@ -112,7 +112,7 @@ def test_with_times_the_moment_of_a_step_is_chosen_and_the_saved_trace_replays(o
 
 def test_the_graph_shows_every_configuration_bad_ones_red_and_leads_to_each(opened):
     page = opened("broken_inconsistent")
-    page.get_by_role("button", name="Graph").click()
+    page.get_by_role("tab", name="Graph").click()
     expect(page, ".graph output").to_have_text(
         re.compile(r"24 configurations(, \d+ drawn: chains are folded)?")
     )

@@ -13,6 +13,9 @@ from threaded import loop_beside
 from adapters.console.access import Access
 from adapters.console.console_server import PAGE, Site, listening
 from bigactors.studio.studio_server import StudioService, lacks_parts
+from checker import check, to_json
+from semantics.state.setting import Control, Scheduler
+from specs.elaboration import read_mission
 
 AXE = PAGE / "node_modules" / "axe-core" / "axe.min.js"
 MISSION = """\
@@ -56,10 +59,10 @@ def browser():
 
 
 @contextmanager
-def studio(loop, file):
-    """Serve the studio of a file; yield its link."""
+def studio(loop, file, run):
+    """Serve the studio of a file, and of a run in another one; yield its link."""
     access, site = Access(), Site(0)
-    serving = listening(StudioService(access, site, file), site)
+    serving = listening(StudioService(access, site, file, run), site)
     port = loop(serving.__aenter__())
     yield f"http://127.0.0.1:{port}", access.act
     loop(serving.__aexit__(None, None, None))
@@ -72,11 +75,11 @@ def opened(browser, tmp_path):
     with loop_beside() as loop:
         contexts = []
 
-        def open_file(name, text=None, theme="light", size=DESK):
+        def open_file(name, text=None, theme="light", size=DESK, run=None):
             file = tmp_path / name
             if text is not None:
                 file.write_text(text, encoding="utf-8")
-            serving = studio(loop, file)
+            serving = studio(loop, file, run)
             address, token = serving.__enter__()
             page = browser.new_context(viewport=size, color_scheme=theme).new_page()
             contexts.append((page, serving))
@@ -288,6 +291,43 @@ def test_a_cursor_before_the_language_server_answers_chooses_its_name(opened):
     put_cursor(page, "  east")
     assert page.locator(".cm-name-class").count() == 0
     says(page, ".chosen-name", "east0 ×")
+
+
+def test_a_run_from_a_file_is_shown_left_and_there_after_a_reload_and_a_change_of_the_text(opened, tmp_path):
+    mission = read_mission(MISSION).under(Scheduler.FCFS, Control.TIMED)
+    trace = check(mission).verdicts["there"].witness
+    data = to_json(trace, "m", "d") | {"scheduler": "fcfs", "control": "timed"}
+    (tmp_path / "trace.json").write_text(json.dumps(data), encoding="utf-8")
+    page = opened("patrol.mission", MISSION, run=tmp_path / "trace.json")
+    says(page, ".explorer .controls output", f"c{len(trace)} of c{len(trace)}")
+    page.click("text=←")
+    page.click(".choices button >> nth=0")
+    until(page, f"studio.shown.value.run === '~{len(trace) - 1}.0'")
+    page.reload()
+    until(page, f"studio.shown.value.run === '~{len(trace) - 1}.0'")
+    says(page, ".explorer .controls output", f"c{len(trace)} of c{len(trace)}")
+    put_cursor(page, "mission patrol")
+    page.keyboard.type("_2")
+    shows(page, ".verdicts .verdict-holds")
+    says(page, ".explorer .controls output", f"c{len(trace)} of c{len(trace)}")
+    page.set_input_files(".wishes input[type=file]", tmp_path / "patrol.mission")
+    shows(page, ".explorer .problem")
+    page.set_input_files(".wishes input[type=file]", tmp_path / "trace.json")
+    until(page, f"studio.shown.value.run === '~{len(trace)}'")
+
+
+def test_the_graph_is_seen_without_scrolling(opened):
+    page = opened("patrol.mission", MISSION, size={"width": 1280, "height": 800})
+    page.get_by_role("tab", name="Graph").click()
+    shows(page, ".graph .node")
+    picture(page, "graph")
+    box = page.locator(".graph .scroll").bounding_box()
+    assert box["y"] + box["height"] <= 800
+    assert box["height"] > 200
+    page.get_by_role("tab", name="Graph").press("ArrowLeft")
+    shows(page, ".lanes-pane")
+    box = page.locator(".lanes-pane .scroll").bounding_box()
+    assert box["y"] + box["height"] <= 800
 
 
 DROP = """([name, text]) => {

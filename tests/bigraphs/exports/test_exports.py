@@ -178,7 +178,7 @@ def test_a_page_holds_everything_and_asks_nobody():
 def test_of_a_large_system_a_page_shows_the_first_states_and_says_so(monkeypatch):
     monkeypatch.setattr("bigraphs.exports.html.MOST_STATES", 3)
     page = to_html(gambler(), "gambler")
-    assert "4 states, 4 transitions, complete, the first 3 states are shown" in page
+    assert "4 states, 4 transitions, complete, shown: the first 3 states" in page
     data = data_of(page)
     assert [move[:2] for move in data["moves"]] == [[0, 1], [0, 2], [1, 0]]
 

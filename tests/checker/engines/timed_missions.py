@@ -12,7 +12,7 @@ from semantics.properties.property import Property
 from semantics.properties.propositions import Inside
 from semantics.state.configuration import Configuration
 from semantics.state.setting import Setting
-from semantics.timing.flight_history import remembered_at_first, vehicles
+from semantics.timing.flight_history import remembered_at_first
 from semantics.timing.intervals import ANY_TIME, Interval
 from semantics.timing.timing import (
     ONE_HOST,
@@ -39,7 +39,7 @@ def intervals(draw: st.DrawFn) -> Interval:
 def timings(draw: st.DrawFn, setting: Setting, tick: int = 1000) -> Timing:
     """Yield timings of a setting."""
     named = {name: draw(intervals()) for name in ("HAND", "PUT", "migrate", "spawn") if draw(st.booleans())}
-    driven = vehicles(setting)
+    driven = setting.driven()
     places = tuple(sorted(set(setting.kinds) - set(driven)))
     endurances = {
         name: Endurance(draw(st.integers(0, 3)), draw(st.sampled_from([(), places])), draw(SMALL))

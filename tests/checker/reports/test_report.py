@@ -44,7 +44,7 @@ check { local_consistency race_freedom deadlock_freedom arrival invariant "never
 def test_a_search_that_met_no_control_is_vacuous():
     text = PILOTS.replace("{ control", '{ react { case "never" => skip } control')
     assert lines(text + "check { race_freedom }")[1] == (
-        "  ✓ race_freedom  holds; searched over 1 configurations with the monitor's memory; "
+        "  ✓ race_freedom  holds; searched over 1 configuration with the monitor's memory; "
         "vacuous: no control was ever served"
     )
 

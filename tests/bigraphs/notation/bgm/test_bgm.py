@@ -150,7 +150,7 @@ MISTAKES = [
     ("name", "b;", "unknown control 'b'"),
     ("name", "a; %active a : 1;", "control 'a' is declared twice"),
     ("name", "a; %rule r a -> a; %rule r a -> a;", "rule 'r' is declared twice"),
-    ("arity", "a[x];", "'a' has 0 ports, this has 1 names"),
+    ("arity", "a[x];", "'a' has 0 ports, this has 1 name"),
     ("system", "a -> a;", "the file has no first state"),
     ("system", "a; a.a;", "the file has 2 first states"),
     ("site", "a.$0;", "a first state has no holes"),

@@ -24,7 +24,6 @@ from semantics.properties.kinds import PropertyKind
 from semantics.properties.property import Property
 from semantics.properties.propositions import And, Ended, Inside, Not, Or
 from semantics.successors import expand
-from semantics.timing.flight_history import vehicles
 from semantics.timing.intervals import Interval
 from semantics.timing.timing import ClauseTimes, Endurance, Every, Motion, Sayable, Timing, Window
 
@@ -63,7 +62,7 @@ def when(formula, name="time"):
 def alike_timings(draw, setting):
     """Yield timings, most of them the same for robots that are alike."""
     timing = draw(timings(setting, 60_000))
-    driven = vehicles(setting)
+    driven = setting.driven()
     motions, lasting = dict(timing.motions), dict(timing.endurances)
     if draw(st.integers(0, 5)):
         motions = dict.fromkeys(driven, Motion((40.0, 60.0)))
@@ -166,12 +165,12 @@ SOON = Interval(0, 1)
 
 def timed(c, **more):
     """Give a mission times that are the same for all its vehicles."""
-    motions = tuple((name, FAST_ONES) for name in vehicles(c.setting))
+    motions = tuple((name, FAST_ONES) for name in c.setting.driven())
     return with_timing(c, replace(Timing(TICK, motions, (), SOON, SOON), **more))
 
 
 def lasting(c, **more):
-    return tuple((name, replace(Endurance(4, ("dock0",), 1), **more)) for name in vehicles(c.setting))
+    return tuple((name, replace(Endurance(4, ("dock0",), 1), **more)) for name in c.setting.driven())
 
 
 def each(kind, *times):
