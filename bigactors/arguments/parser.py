@@ -10,7 +10,6 @@ from typing import Final, NoReturn, Protocol, cast, runtime_checkable
 from bigactors.exits import Exit
 from bigactors.mistakes import Mistake
 
-
 SHARED: Final = frozenset({"help", "color"})
 """Arguments of every command: only the help of `bigactors` itself lists them."""
 
