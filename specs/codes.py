@@ -107,8 +107,8 @@ class Code(Enum):
     UNKNOWN_CHARACTER = (
         "LS106",
         "unknown character",
-        """This character has no meaning here. Strings need straight double quotes, not typographic ones. Of operators
-        there are `+`, `-`, comparisons, `and`, `or`, `not`, `in` and `of`.""",
+        """This character has no meaning here. Strings need straight double quotes. The operators are `+`, `-`,
+        comparisons, `and`, `or`, `not`, `in` and `of`.""",
     )
     MISSING_ARROW = (
         "LS107",
@@ -129,8 +129,8 @@ class Code(Enum):
     MISSPELT_KEYWORD = (
         "LS110",
         "no word of the language",
-        """This word is unknown here. It is close to a known one (upper and lower case differ), or it belongs to
-        another language: the hint gives the form of this language.""",
+        """This word is close to a known one (upper and lower case differ), or belongs to another language: the
+        hint gives the form of this language.""",
     )
     RESERVED_WORD = (
         "LS111",
@@ -172,9 +172,8 @@ class Code(Enum):
     MISSING_UNIT = (
         "LS118",
         "number without a unit",
-        """Lengths are in metres or kilometres: `400 m`, `1.5 km`. Durations are in seconds, minutes or hours: `90 s`,
-        `10 min`, `1.5 h`, or in milliseconds. Speeds are in metres a second, kilometres an hour or knots: `18 m/s`,
-        `65 km/h`, `35 kn`.""",
+        """Lengths have the units `400 m` and `1.5 km`, durations `100 ms`, `90 s`, `10 min` and `1.5 h`, speeds
+        `18 m/s`, `65 km/h` and `35 kn`.""",
     )
     MISPLACED_STATEMENT = (
         "LS119",
@@ -240,17 +239,15 @@ class Code(Enum):
     UNKNOWN_KIND = (
         "LS202",
         "unknown kind",
-        """A kind is used that no signature declares. `signature standard` declares the kinds of the paper: Location,
+        """No signature declares this kind; only its first use is reported. `signature standard` declares Location,
         OilSpill, UAV, Vessel, Tanker, Drifter and Station. Others are declared by `signature { kind Tug driven }`, or
-        beside those, `signature standard { kind Tug driven  kind Location contains Tug }`. A kind is reported once,
-        where it is used first.""",
+        beside those, `signature standard { kind Tug driven  kind Location contains Tug }`.""",
     )
     DUPLICATE_NAME = (
         "LS203",
         "name declared twice",
         """Entities, kinds, bigActors and channels all have different names; so do rules among each other, and
-        behaviours. `region` and `unknown` are reserved: they are an observation's words for the place of a node in
-        no place, and of an unseen node.""",
+        behaviours. `region` and `unknown` are reserved for observations.""",
     )
     WRONG_SORT = (
         "LS204",
@@ -303,9 +300,8 @@ class Code(Enum):
     TOO_MANY_ENTITIES = (
         "LS307",
         "too many entities",
-        """A mission has at most two thousand entities, and its entities and places make at most 1.2 million pairs (a
-        thousand places) to test for containment. Reduce a file with `within` (an area), `keep` (some kinds) or `limit`
-        (a number).""",
+        """A mission has at most two thousand entities, and 1.2 million pairs of an entity and a place. Reduce a
+        file with `within` (an area), `keep` (some kinds) or `limit` (a number).""",
     )
     MISSING_EXTRA = (
         "LS308",
@@ -355,16 +351,15 @@ class Code(Enum):
         "LS407",
         "value of another type",
         """A value of this type is not allowed here: a condition is true or false, `size` counts a set or an
-        observation, `MOVE_HOST_TO` needs an entity, `send` a bigActor. Types are inferred through variables,
-        arguments, patterns and messages; a line in brackets gives the variable that value. It is a mistake only
-        where no possible value is allowed.""",
+        observation, `MOVE_HOST_TO` needs an entity, `send` a bigActor. Types are inferred; a line in brackets
+        gives the variable that value. It is a mistake only where no possible value is allowed.""",
     )
     BAD_FAMILY = (
         "LS408",
         "family that cannot be written out",
-        """A family has a member for each entity of a kind, or of a set or a route of entities that names each once:
-        `BigActor patrol[i] for u in UAV ...`, `for u in [uav1, uav0]`. Written out, the members of all families may
-        have at most a hundred thousand words together.""",
+        """A family has a member for each entity of a kind, or of a set or a route that names each once:
+        `BigActor patrol[i] for u in UAV ...`, `for u in [uav1, uav0]`. Written out, all members have at most a
+        hundred thousand words together.""",
     )
     # --- LS5: reaction rules
     RULE_SYNTAX = (
@@ -449,10 +444,9 @@ class Code(Enum):
     FORMULA_TOO_LARGE = (
         "LS607",
         "formula too large",
-        """Quantifiers are written out, and `<->` doubles its sides. After that, the properties of a mission may have
-         at most fifty thousand atoms. Parts of `invariant`, `reachable` and `within` about entities alone are not
-        written out: `forall x, y: UAV . x != y -> forall c: Cell . not (x in c and y in c)` may be asked of fifty
-        vehicles on two hundred places. It may ask two hundred thousand atoms of a configuration.""",
+        """Quantifiers are written out, and `<->` doubles its sides. After that, the properties of a mission
+        have at most fifty thousand atoms. Parts of `invariant`, `reachable` and `within` about entities alone
+        are not written out, and may ask two hundred thousand atoms of a configuration.""",
     )
     NOT_QUANTIFIED = (
         "LS608",
@@ -475,9 +469,9 @@ class Code(Enum):
     WRONG_LOGIC = (
         "LS611",
         "operator of another logic",
-        """`invariant` and `reachable` are about single configurations. `ltl` is about every run: `[]`, `<>`, X, U, R
-        and W in any combination, and `taken`, without A and E. `ctl` is about the tree of runs: each path operator
-        directly follows A or E. `env` and `say` are steps of no bigActor.""",
+        """`invariant` and `reachable` are about single configurations. `ltl` is about every run: `[]`, `<>`, X,
+        U, R, W and `taken`, without A and E. In `ctl` each path operator directly follows A or E. `env` and
+        `say` are steps of no bigActor.""",
     )
 
     NOT_COMPARABLE = (
@@ -490,8 +484,8 @@ class Code(Enum):
     BAD_TIME_LIMIT = (
         "LS612",
         "time limit out of bounds",
-        """The time that a `react` waits before its `after` branch, and a time limit of the `live` section, are more
-        than zero, and at most a week.""",
+        """The time of an `after` branch, and a time limit of the `live` section, is more than zero, and at most
+        a week.""",
     )
 
     EMPTY_MISSION = (
@@ -503,22 +497,22 @@ class Code(Enum):
     NO_BIGACTOR = (
         "LS615",
         "mission without a bigActor",
-        """A mission without bigActors can be shown, and recordings can be replayed in its places, but a verdict on it
-        would be empty.""",
+        """A mission without bigActors can be shown, and recordings can be replayed in its places, but a verdict
+        on it would be empty.""",
     )
 
     BAD_RANGE = (
         "LS616",
         "length out of bounds",
-        """A distance between entities is above 0 m. The greatest distance of a vehicle from its way (`strays`) is at
-        most 100 km, and at least the diameter of the circles that it flies.""",
+        """A distance between entities is above 0 m. `strays` is at most 100 km, and at least the diameter of
+        the vehicle's circles.""",
     )
 
     NOT_A_PLACE = (
         "LS617",
         "place without an inside",
-        """`possibly x in p` and `surely x in p` ask for a place p: an entity with an area, or one that carries x. Of an
-        entity that is a point ask for a distance: `x at least 50 m from p`, `x within 3 km of p`.""",
+        """`possibly x in p` and `surely x in p` ask for a place p: an entity with an area, or one that carries
+        x. For a point ask for a distance: `x at least 50 m from p`, `x within 3 km of p`.""",
     )
 
     NOT_UNDER_WAY = (
@@ -531,16 +525,16 @@ class Code(Enum):
     TOO_MANY_MISSED = (
         "LS619",
         "too many entities to miss",
-        """An observation may miss any of the entities in view that `observe may miss` names, so each of them doubles
-        its answers. The clauses of a mission may name at most eight entities.""",
+        """Each entity that `observe may miss` names doubles the answers of an observation. The clauses of a
+        mission name at most eight entities.""",
     )
     # --- LS7: warnings
     NOTHING_QUANTIFIED = (
         "LS701",
         "quantifier over nothing",
-        """A property quantifies over a kind that has no entity, or over bigActors that do not exist: `forall` is
-        always true, `exists` never. Or a family of such a kind has no member. Declare one (an entity may be `absent`
-        at first), or quantify over others.""",
+        """A property quantifies over a kind that has no entity, or over bigActors that do not exist: `forall`
+        is always true, `exists` never. Or a family has no member. Declare one (an entity may be `absent` at
+        first), or quantify over others.""",
     )
 
     FAR_FROM_THE_REST = (
@@ -553,7 +547,7 @@ class Code(Enum):
     TWO_TYPES = (
         "LS703",
         "variable of two types",
-        """A variable is given values of different types, and one of them cannot be taken where the variable is used.
+        """A variable has values of different types, and one of them is not allowed where the variable is used.
         It is no mistake if the other one is always there then; use a variable for each.""",
     )
 
@@ -567,17 +561,16 @@ class Code(Enum):
     NEVER_INSIDE = (
         "LS706",
         "containment that the signature forbids",
-        """A formula asks whether one entity is in another, which is always false: the other kind neither contains nor
-        carries it, nor anything that could contain it.""",
+        """A formula asks whether one entity is in another, which is always false: the other kind neither
+        contains nor carries it, nor anything that could contain it.""",
     )
 
     PROBABLY_SWAPPED = (
         "LS705",
         "probably all swapped",
-        """All of a world seems to have latitude and longitude exchanged: everything that floats (a Vessel, a Boat)
-        stands on land, 100 km from any water, or everything is far out at sea, and exchanged it would be near a
-        coast. Missions use (latitude, longitude), GeoJSON uses [longitude, latitude]. Rivers and canals
-        are not known: nearer to a coast, boats on land are taken to be on one.""",
+        """Everything that floats (a Vessel, a Boat) stands on land, 100 km from any water, or everything is far
+        out at sea and would be near a coast with latitude and longitude exchanged. Missions use (latitude,
+        longitude), GeoJSON uses [longitude, latitude]. Rivers and canals are not known.""",
     )
 
     BOUNDS_NOTHING = (
@@ -597,32 +590,31 @@ class Code(Enum):
     MAY_CROSS = (
         "LS709",
         "flight that may cross a forbidden place",
-        """An invariant keeps a vehicle, or what it may carry, out of a place, and the straight way of one of its
-        flights may lead through it.
-        `actually` does not cover a vehicle in transit: ask for `not possibly uav0 in place0`. Or lead the flight around
-        by VIA, or in several moves.""",
+        """An invariant keeps a vehicle, or its possible cargo, out of a place, and the straight way of one of
+        its flights may lead through it. `actually` does not cover a vehicle in transit: ask for `not possibly
+        uav0 in place0`. Or lead the flight around by VIA, or in several moves.""",
     )
 
     HIDES_AN_ENTITY = (
         "LS710",
         "pattern that takes anything for an entity's name",
-        """A name in a pattern is a new variable, which takes any value. One that is called like an entity hides it in
-        the case. `=spill` compares; another name takes any value.""",
+        """A name in a pattern is a new variable, which takes any value, and hides an entity of that name.
+        `=spill` compares; another name takes any value.""",
     )
 
     ONE_POINT = (
         "LS711",
         "two vehicles that may be sent to one point",
-        """In a mission with properties about ways, two vehicles may be sent to one place, and so to one point. Neither
-        their altitudes nor a property part them: `uav0 at least 50 m from uav1`.""",
+        """In a mission with properties about ways, two vehicles may be sent to one place, and so to one point.
+        Neither their altitudes nor a property part them: `uav0 at least 50 m from uav1`.""",
     )
 
     # --- LS8: timing
     BAD_DURATION = (
         "LS801",
         "duration or speed out of bounds",
-        """Durations in `timing` and deadlines are whole numbers of ticks, and at most a week. A tick is a second
-        unless the section sets another, `tick 100 ms`: a whole number of milliseconds. Speeds are above 0 m/s.""",
+        """Durations in `timing` and deadlines are whole numbers of ticks, and at most a week. A tick is a
+        second unless the section sets another: `tick 100 ms`. Speeds are above 0 m/s.""",
     )
     EMPTY_INTERVAL = (
         "LS802",
@@ -644,8 +636,8 @@ class Code(Enum):
     UNTIMED_PROPERTY = (
         "LS805",
         "property that is not decided in time",
-        """`ltl`, `ctl`, `progress` and `fairness` are about runs without times. With `timing`, ask for a bounded
-        response, `within 5 min "answered": F leads to G`, or check the mission without that section.""",
+        """`ltl`, `ctl`, `progress` and `fairness` are about runs without times. With `timing`, ask for a
+        bounded response, `within 5 min "answered": F leads to G`, or check the mission without that section.""",
     )
     NOT_IN_ENVIRONMENT = (
         "LS806",

@@ -19,7 +19,7 @@ _TEXT: Final = {"type": "string"}
 _NUMBER: Final = {"type": "number"}
 _OPTIONAL: Final = {"type": ["string", "null"]}
 _BY: Final = {**_TEXT, "description": "The operator's name; empty if unknown."}
-_TIME: Final = {**_NUMBER, "description": "In seconds since 1970 UTC."}
+_TIME: Final = _NUMBER
 _TEXTS: Final = {"type": "array", "items": _TEXT}
 _OBSERVED: Final = {
     "type": "object",
@@ -116,7 +116,7 @@ ARRIVAL: Final = _object(
     altitude=BAND,
     channels=_TEXTS,
     carried_by=_TEXT,
-    time={**_NUMBER, "description": "When it was observed, in seconds since 1970 UTC."},
+    time={**_NUMBER, "description": "When it was observed."},
     velocity={"type": "array", "items": _NUMBER, "description": "Metres a second, degrees from true north."},
     time_to_live=_NUMBER,
     gone={"type": "boolean", "const": True},
@@ -141,7 +141,7 @@ STEP: Final = _object(
     shown={**_TEXTS, "description": "The output of `display`."},
     date={
         "type": "number",
-        "description": "The time of another station's step, by the clock here, in seconds since 1970 UTC.",
+        "description": "The time of another station's step, by the clock here.",
     },
     digest={**_TEXT, "description": "Of the cells that it wrote, with their values."},
 )
@@ -152,7 +152,7 @@ DEADLINE: Final = _object(
     agent=_TEXT,
     until={
         "type": ["number", "null"],
-        "description": "In seconds since 1970 UTC; null once it waits no longer.",
+        "description": "Null once it waits no longer.",
     },
 )
 
@@ -161,7 +161,7 @@ CLOCKS: Final = _object(
     ("began", "rested"),
     began={
         "type": "number",
-        "description": "The start of the mission, in seconds since 1970 UTC, plus the time without listening.",
+        "description": "The start of the mission, plus the time without listening.",
     },
     rested={
         "type": "number",
