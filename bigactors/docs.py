@@ -16,12 +16,12 @@ from bigactors.files import make_folder, write_text
 from bigactors.lsp.textmate import textmate_grammar
 from bigactors.terminal import safe_output, say
 from checker.engines.capabilities import unsupported_table
-from checker.reports.glossary import word_table
+from checker.reports.glossary import word_list
 from semantics.bigactor_rules import EXTENSION
 from semantics.bigactor_rules import say as say_rule
 from semantics.rules import RULES, TIMED_RULES, env
 from semantics.state.station_partition import PASSING
-from specs import code_table
+from specs import code_list
 from specs.language_reference import language_reference, whole_mission
 
 FOLDER = Path(__file__).parent.parent / "docs"
@@ -115,7 +115,7 @@ def pages() -> dict[str, str]:
     """Return the generated pages by their file names, and the grammar by which editors colour missions."""
     return {
         "reference/cli.md": "".join(cli_page()),
-        "reference/codes.md": f"{GENERATED}{CODES_HEAD}\n{code_table()}{WORDS_HEAD}{word_table()}",
+        "reference/codes.md": f"{GENERATED}{CODES_HEAD}\n{code_list()}{WORDS_HEAD}{word_list()}",
         "reference/language.md": f"{GENERATED}{language_reference()}",
         "reference/whole.mission": whole_mission(),
         "reference/recording.md": "".join(recording_page()),
@@ -144,10 +144,10 @@ def recording_page() -> Iterator[str]:
     """Yield the schemas of recordings, topic by topic."""
     yield f"{GENERATED}{RECORDING_HEAD}"
     for topic, (name, schema) in SCHEMAS.items():
-        yield f"\n## {topic}: `{name}`\n\n{schema['description']}\n\n| member | type | |\n| --- | --- | --- |\n"
+        yield f"\n## {topic}: `{name}`\n\n{schema['description']}\n\n"
         for member, of in schema["properties"].items():
-            required = "" if member in schema["required"] else " (optional)"
-            yield f"| `{member}`{required} | {_type(of)} | {of.get('description', '')} |\n"
+            optional = "" if member in schema["required"] else ", optional"
+            yield f"- `{member}` ({_type(of)}{optional}): {of.get('description', '')}".rstrip(": ") + "\n"
 
 
 def _type(schema: dict[str, Any]) -> str:

@@ -676,12 +676,14 @@ def explain(code: Code) -> str:
     return f"{code.number}: {code.title} ({code.range})\n\n{code.explanation}\n"
 
 
-def code_table() -> str:
-    """Return the table of all codes in Markdown, for the documentation."""
-    rows = sorted((code.number, code.title, code.explanation) for code in Code)
-    lines = [f"| {number} | {title} | {_cell(text)} |" for number, title, text in rows]
-    return "\n".join(["| code | mistake | meaning and remedy |", "| --- | --- | --- |", *lines]) + "\n"
+def code_list() -> str:
+    """Return all codes in Markdown, by their ranges, for the documentation."""
+    codes = sorted(Code, key=lambda code: code.number)
+    return "\n".join(
+        f"## {number}xx: {subject}\n\n{''.join(map(_item, (code for code in codes if code.range == subject)))}"
+        for number, subject in RANGES.items()
+    )
 
 
-def _cell(text: str) -> str:
-    return text.replace("|", "\\|")
+def _item(code: Code) -> str:
+    return f"- **{code.number}**, {code.title}: {code.explanation}\n"

@@ -44,8 +44,8 @@ and `within` ask for regions, in missions with `control timed`. Rules never do: 
 - The altitudes of an entity are its own band, from take-off to landing, and all altitudes without a band. On the way
   from or to a carrier, the carrier's altitudes belong to the band.
 
-In doubt `possibly` is true, and the other three are false. The doubt is 0.5 m for regions within 500 km of their middle,
-and 5 m within 1,000 km, and 0.12 % of the radius of each circle, which is drawn as a polygon of 64 corners. Farther
+In doubt `possibly` is true, and the other three are false. The doubt is 0.5 m for regions within 500 km of their
+middle, 5 m within 1,000 km, and 0.12 % of the radius of each circle, which is drawn as a polygon of 64 corners. Farther
 regions, and regions over a pole, are refused. Places, and entities with a certain position, are compared exactly.
 
 Two vehicles that were sent to one place are not apart, unless their altitudes are: both go to one point.
@@ -54,12 +54,12 @@ Two vehicles that were sent to one place are not apart, unless their altitudes a
 MISSES: Final = """\
 ## Observations that miss
 
-With `observe may miss OilSpill` each observation has one answer for each set of spills that it may leave out: `sense` is
-a choice among them. The trace names it: `missing oilSpill0`.
+With `observe may miss OilSpill` each observation has one answer for each set of spills that it may leave out: `sense`
+is a choice among them. The trace names it: `missing oilSpill0`.
 
 - The answer is that of a world from which the missed entities have vanished with their cargo: L_q = q(A(P ∖ M)). So
-  `L ⊕ L_q` sends a missed entity to the region if it was believed in a searched place, and the content of a missed place
-  is seen in the place around it.
+  `L ⊕ L_q` sends a missed entity to the region if it was believed in a searched place, and the content of a missed
+  place is seen in the place around it.
 - Only entities that the answer would show are missed: one observation of n of them has 2ⁿ answers. A mission may name
   eight entities (LS619).
 - No agent misses its own host, or its host's carrier. `HOSTED_AT` alone misses no agent.

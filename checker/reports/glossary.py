@@ -188,10 +188,11 @@ def find_word(asked: str) -> tuple[str, str] | None:
     return word, " ".join((PROPERTIES.get(word) or WORDS[word]).split())
 
 
-def word_table() -> str:
-    """Return the table of all words but the rules, in Markdown, for the documentation."""
-    rows = [f"| {word} | {' '.join(text.split())} |" for word, text in {**PROPERTIES, **WORDS}.items()]
-    return "\n".join(["| word | meaning |", "| --- | --- |", *rows]) + "\n"
+def word_list() -> str:
+    """Return all words but the rules, in Markdown, for the documentation."""
+    return "".join(
+        f"- **{word}**: {' '.join(text.split())}\n" for word, text in {**PROPERTIES, **WORDS}.items()
+    )
 
 
 def _found(asked: str) -> str | None:
