@@ -15,7 +15,7 @@ from bigactors.arguments import make_parser
 from bigactors.files import make_folder, write_text
 from bigactors.lsp.textmate import textmate_grammar
 from bigactors.terminal import safe_output, say
-from checker.engines.capabilities import unsupported_table
+from checker.engines.capabilities import unsupported_list
 from checker.reports.glossary import word_list
 from semantics.bigactor_rules import EXTENSION
 from semantics.bigactor_rules import say as say_rule
@@ -63,8 +63,7 @@ The output of `bigactors --help` and `bigactors COMMAND --help`. [json.md](json.
 COMBINATIONS_HEAD = """
 ### Combinations
 
-Options and properties combine freely, except for these pairs. A pair that is not accepted is a mistake (exit code 2)
-with this reason.
+Options and properties combine freely, except for these pairs. A pair that is not accepted is a mistake (exit code 2).
 
 """
 
@@ -168,7 +167,7 @@ def cli_page() -> Iterator[str]:
         for name, parser in commands.items():
             yield f"\n## bigactors {name}\n\n```text\n{parser.format_help().strip()}\n```\n"
             if name == "check":
-                yield f"{COMBINATIONS_HEAD}{unsupported_table()}"
+                yield f"{COMBINATIONS_HEAD}{unsupported_list()}"
 
 
 @contextmanager

@@ -17,7 +17,6 @@ EXAMPLES: Final = (
     "bigactors check --watch oil_spill.mission",
     "bigactors check --no-traces specs/missions/*.mission",
     "bigactors check --json - oil_spill.mission | jq '.properties[] | [.name, .verdict]'",
-    "bigactors check --trace traces --max-time 60 handover.mission",
     "bigactors check --output junit:report.xml --output sarif:report.sarif specs/missions/*.mission",
 )
 
