@@ -97,8 +97,8 @@ An unknown altitude is 0 there. The schemas in the file leave out members whose 
 tables below are complete.
 
 A step is the step of a trace ([trace.schema.json](trace.schema.json)). `observed` has the cells of P that the world
-wrote, each as `[cell, value]`. A cell is a list of words such as `["placement", "uav0"]`, `["channels", "uav0"]`,
-`["down", "wifi"]`, `["left", "uav0", "wifi"]`. A placement is `null` (absent), `{"at": {"ring": ...}, "altitude":
+wrote, each as `[cell, value]`. A cell is a list of words such as `["placement", "uav0"]` or `["channels", "uav0"]`. A
+placement is `null` (absent), `{"at": {"ring": ...}, "altitude":
 [...]}`, `{"by": ..., "shape": ...}` (carried) or `{"from": ..., "to": ...}` (sent by another station). A ring gives
 latitude and longitude in 1e-7 degree, with `of` and `anchor` where a polygon is another one, moved.
 
