@@ -49,8 +49,8 @@ class Code(Enum):
     CONTROL_CHARACTER = (
         "LS003",
         "control character",
-        """A mission file contains no control characters except tabs and line ends. This is
-        probably not a mission file, or it is in UTF-16.""",
+        """A mission file contains no control characters except tabs and line ends. Is it a mission file, and
+        not in UTF-16?""",
     )
     WORD_TOO_LONG = (
         "LS004",
@@ -61,8 +61,8 @@ class Code(Enum):
     NESTED_TOO_DEEPLY = (
         "LS005",
         "nested too deeply",
-        """Brackets, blocks and operators nest at most two hundred levels deep. Define behaviours
-        with `def`, name values with `let`, and split long conditions.""",
+        """Brackets, blocks and operators nest at most two hundred deep. Define behaviours with `def`, name
+        values with `let`, and split long conditions.""",
     )
     TOO_MANY_WORDS = (
         "LS006",
@@ -73,8 +73,7 @@ class Code(Enum):
     UNREADABLE_FILE = (
         "LS007",
         "unreadable file",
-        """The mission file, or a file it names with `from`, is missing, is not a file or may not be
-        read.""",
+        """The mission file, or a file it names with `from`, is missing, is no file or may not be read.""",
     )
     # --- LS1: syntax
     UNEXPECTED = (
@@ -95,8 +94,7 @@ class Code(Enum):
     UNOPENED_BRACKET = (
         "LS104",
         "bracket never opened",
-        """A closing bracket has no opening one. Usually there is one too many, or the opening one was
-        commented out.""",
+        """A closing bracket has no opening one: there is one too many, or the opening one is commented out.""",
     )
     UNCLOSED_STRING = (
         "LS105",
@@ -113,8 +111,8 @@ class Code(Enum):
     MISSING_ARROW = (
         "LS107",
         "branch without '=>'",
-        """A case is written `case pattern => statements`, with a guard `case pattern if condition =>
-        statements`, and the branch behind all cases of a `react` `after 10 min => statements`.""",
+        """A case is written `case pattern => statements`, or `case pattern if condition => statements`, and the
+        branch behind all cases of a `react` `after 10 min => statements`.""",
     )
     SINGLE_EQUALS = (
         "LS108",
@@ -140,8 +138,8 @@ class Code(Enum):
     BAD_NUMBER = (
         "LS112",
         "bad number",
-        """Coordinates and lengths are finite decimal numbers, such as `37.04`, `-8.59` or `4e2`; counts
-        and the numbers of expressions are whole.""",
+        """Coordinates and lengths are finite decimal numbers, such as `37.04`, `-8.59` or `4e2`; counts and
+        numbers in expressions are whole.""",
     )
     MISSING_RECIPIENT = (
         "LS113",
@@ -178,8 +176,8 @@ class Code(Enum):
     MISPLACED_STATEMENT = (
         "LS119",
         "statement outside a behaviour",
-        """Statements belong in the body of a bigActor, `BigActor a hosted_at h with_behavior { ... }`, or
-        of a behaviour, `def b() = { ... }`.""",
+        """Statements belong in the body of a bigActor, `BigActor a hosted_at h with_behavior { ... }`, or of a
+        behaviour, `def b() = { ... }`.""",
     )
     MISSING_BRACE = (
         "LS120",
@@ -202,7 +200,7 @@ class Code(Enum):
         "LS123",
         "entity without a kind",
         """An entity is declared with its kind, and then its placement: `uav0: UAV = point (37.08, -8.55)`. A
-        parameter of a rule has a kind too: `rule land(u: UAV, b: Location) { ... }`.""",
+        parameter of a rule has a kind, too: `rule land(u: UAV, b: Location) { ... }`.""",
     )
     BAD_COORDINATE = (
         "LS124",
@@ -252,21 +250,21 @@ class Code(Enum):
     WRONG_SORT = (
         "LS204",
         "name of another sort",
-        """The name is declared as something that is not allowed here: a bigActor where a node is expected, or a
+        """The name belongs to something that is not allowed here: a bigActor where a node is expected, or a
         kind where an entity is.""",
     )
     UNUSABLE_NAME = (
         "LS205",
         "name that cannot be written",
-        """An entity read from a file has a name that cannot be written in a mission. Names are letters, digits
-        and `_`, a letter first, and no reserved word.""",
+        """An entity in a file has a name that a mission cannot have: letters, digits and `_`, a letter first,
+        and no reserved word.""",
     )
     # --- LS3: world and geometry
     BAD_GEOMETRY = (
         "LS301",
         "no geometry on the earth",
         """Latitudes are between -90 and 90 degrees, longitudes between -180 and 180; borders do not cross
-        themselves; the radius of a circle is positive; an altitude band begins with its lower end.""",
+        themselves; a radius is positive; an altitude band begins with its lower end.""",
     )
     NO_WHEREABOUTS = (
         "LS302",
@@ -288,14 +286,13 @@ class Code(Enum):
     PLACES_OVERLAP = (
         "LS305",
         "places that do not nest",
-        """Two places that never move, each of a kind that may contain something, must nest or be disjoint:
-        otherwise an entity in both has no unique parent.""",
+        """Two places that never move, of kinds that may contain something, must nest or be disjoint: otherwise
+        an entity in both has no unique parent.""",
     )
     BAD_FILE = (
         "LS306",
         "mistake in a world file",
-        """A file named with `from` has a mistake, or the clauses after it do not fit its format. The message names
-        the mistake.""",
+        """A file named with `from` has a mistake, or the clauses after it do not fit its format.""",
     )
     TOO_MANY_ENTITIES = (
         "LS307",
@@ -328,8 +325,7 @@ class Code(Enum):
     UNBOUNDED_RECURSION = (
         "LS403",
         "recursion that is not a tail call",
-        """A behaviour may call itself, or a behaviour that calls it, only as its last statement. Otherwise the
-        rest of the program grows without bound.""",
+        """A behaviour may call itself, or a behaviour that calls it, only as its last statement.""",
     )
     EMPTY_LOOP = (
         "LS404",
@@ -344,7 +340,7 @@ class Code(Enum):
     WRONG_QUERY = (
         "LS406",
         "query without an answer",
-        """`HOSTED_AT(q)` yields bigActors, which have no parents, children or links. So it can only be the
+        """`HOSTED_AT(q)` yields bigActors, which have no parents, children or links: it can only be the
         outermost relation of a query.""",
     )
     WRONG_VALUE = (
@@ -371,14 +367,14 @@ class Code(Enum):
     CREATES_OR_DELETES = (
         "LS502",
         "rule that creates or deletes",
-        """Controls move and link existing nodes; nothing creates or deletes a node. Both sides of a rule name the
-        same nodes, and each node has a name.""",
+        """Nothing creates or deletes a node. Both sides of a rule name the same nodes, and each node has a
+        name.""",
     )
     MOVED_CONTENT = (
         "LS503",
         "rule that moves unknown content",
-        """A site `$0` stands for the other contents of a node. In missions, contents do not move: a site is
-        under the same node on both sides.""",
+        """A site `$0` stands for the other contents of a node. Contents do not move: a site is under the same
+        node on both sides.""",
     )
     UNPLACED_NODE = (
         "LS504",
@@ -422,14 +418,14 @@ class Code(Enum):
     INEXACT_DRIFT = (
         "LS603",
         "drift within that would not be exact",
-        """`drifts within` replaces infinitely many placements by finitely many. That is exact for one entity among
-        places that do not move. Otherwise list placements: `drifts among`.""",
+        """`drifts within` replaces infinitely many placements by finitely many. That is exact for one entity
+        among places that do not move. Otherwise list placements: `drifts among`.""",
     )
     POINTLESS_CLAUSE = (
         "LS604",
         "clause that can never apply",
-        """The environment can never do this: bring in an entity that is present already, or return an entity to
-        a channel that it was never on.""",
+        """The environment can never do this: bring in an entity that is present, or return an entity to a
+        channel that it was never on.""",
     )
     NO_RECIPIENT = (
         "LS605",
@@ -457,8 +453,9 @@ class Code(Enum):
     NOT_CONSTANT = (
         "LS609",
         "value that is not constant",
-        """A message of `says`, the value behind `=` in a pattern (`=uav0`), and a value that a property compares a
-        variable with, is constant: a text, number, truth value, name, or a tuple or set of these.""",
+        """A message of `says`, the value behind `=` in a pattern (`=uav0`), and a value that a property
+        compares a variable with, are constants: texts, numbers, truth values, names, tuples or sets of
+        these.""",
     )
     TOO_MANY_MISTAKES = (
         "LS610",
@@ -491,7 +488,7 @@ class Code(Enum):
     EMPTY_MISSION = (
         "LS614",
         "nothing to check",
-        """The file declares nothing, so there is nothing to check or to fly. Is it the right file?""",
+        """The file declares nothing to check or to fly. Is it the right file?""",
     )
 
     NO_BIGACTOR = (
@@ -518,8 +515,8 @@ class Code(Enum):
     NOT_UNDER_WAY = (
         "LS618",
         "region of control that takes no time",
-        """`possibly`, `surely`, `at least` and `within` are about ways, and with `control atomic` nothing is under way.
-        Write `control timed`.""",
+        """`possibly`, `surely`, `at least` and `within` are about ways. With `control atomic` nothing is under
+        way: write `control timed`.""",
     )
 
     TOO_MANY_MISSED = (
@@ -540,8 +537,8 @@ class Code(Enum):
     FAR_FROM_THE_REST = (
         "LS702",
         "far from everything else",
-        """An entity is a thousand kilometres or more from all others. Usually latitude and longitude are swapped:
-        missions use (latitude, longitude), GeoJSON uses [longitude, latitude].""",
+        """An entity is a thousand kilometres or more from all others. Are latitude and longitude swapped?
+        Missions use (latitude, longitude), GeoJSON uses [longitude, latitude].""",
     )
 
     TWO_TYPES = (
@@ -554,8 +551,8 @@ class Code(Enum):
     ALWAYS_THE_SAME = (
         "LS704",
         "comparison that is always the same",
-        """Values of different types are never equal, and a set or an observation has no members of that type. A text is
-        never equal to a name: `"base"` is a text, `base` the name of an entity.""",
+        """Values of different types are never equal, and a set or an observation has no members of that type.
+        `"base"` is a text, `base` the name of an entity.""",
     )
 
     NEVER_INSIDE = (
@@ -576,15 +573,15 @@ class Code(Enum):
     BOUNDS_NOTHING = (
         "LS707",
         "bound that is impossible or unused",
-        """A line of `timing` is about a kind that has no entity; or a vehicle lasts for less than the shortest
-        flight from its place of restoration to any other place.""",
+        """A line of `timing` is about a kind that has no entity; or a vehicle lasts for less than its shortest
+        flight.""",
     )
 
     NEVER_WAITS = (
         "LS708",
         "loop that asks and never waits",
-        """The requests of the loop pile up. An exploration stops at more than 64 requests of one bigActor
-        (`--max-pending`). Let each turn wait for its answer.""",
+        """The requests of the loop pile up, and an exploration stops at 64 of one bigActor (`--max-pending`).
+        Let each turn wait for its answer.""",
     )
 
     MAY_CROSS = (
@@ -606,7 +603,7 @@ class Code(Enum):
         "LS711",
         "two vehicles that may be sent to one point",
         """In a mission with properties about ways, two vehicles may be sent to one place, and so to one point.
-        Neither their altitudes nor a property part them: `uav0 at least 50 m from uav1`.""",
+        Part them by altitudes, or ask for `uav0 at least 50 m from uav1`.""",
     )
 
     # --- LS8: timing

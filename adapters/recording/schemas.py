@@ -98,7 +98,7 @@ RUN: Final = _object(
         "type": ["number", "null"],
         "exclusiveMinimum": 0,
         "description": "Seconds of the run in one of the clock on the wall: 1 unless time is simulated, null for "
-        "as many as can be computed.",
+        "as many as possible.",
     },
     station={
         "type": ["object", "null"],
@@ -123,8 +123,7 @@ ARRIVAL: Final = _object(
 )
 
 LEFT_OUT: Final = _object(
-    "How many arrivals were not recorded, of an entity or of all that the mission does not name: more came in a second "
-    "than are written.",
+    "How many arrivals were not recorded, of an entity or of all that the mission does not name.",
     ("plugin", "entity", "arrivals"),
     plugin=_TEXT,
     entity={**_TEXT, "description": "Empty for all that the mission does not name."},
@@ -270,8 +269,8 @@ GIVEN_BACK: Final = _object(
 )
 
 ORDER: Final = _object(
-    "An operator ordered a vehicle, several, or all, to hold or to return. The commands have the same requests, and a "
-    "report `Accepted` or `Arrived` of such a request confirms it, `Rejected` says why not.",
+    "An operator ordered vehicles to hold or to return. The commands have the same requests, and a report `Accepted` "
+    "or `Arrived` of such a request confirms it.",
     ("order", "vehicle", "by", "requests", "refusal"),
     order={"type": "string", "enum": ["hold", "return"]},
     vehicle={

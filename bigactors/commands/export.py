@@ -15,9 +15,9 @@ if TYPE_CHECKING:
     from specs.elaboration import ElaboratedMission
 
 DESCRIPTION: Final = """\
-Write the reachable part of a mission with times as a timed automaton, for a second opinion: --format tchecker for
-TChecker (github.com/ticktac-project/tchecker), --format uppaal for UPPAAL (uppaal.org), as XML. With --property, the
-automaton contains an observer: its location `wrong` is reachable exactly if the property is violated.
+Write the reachable part of a mission with times as a timed automaton, for TChecker
+(github.com/ticktac-project/tchecker) or UPPAAL (uppaal.org). With --property, the automaton contains an observer: its
+location `wrong` is reachable exactly if the property is violated.
 
   tck-reach -a covreach -l wrong patrol.tck     REACHABLE true: it is violated
   verifyta patrol.xml                           Formula is satisfied: it holds"""
