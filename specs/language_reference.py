@@ -45,8 +45,8 @@ and `within` ask for regions, in missions with `control timed`. Rules never do: 
   from or to a carrier, the carrier's altitudes belong to the band.
 
 In doubt `possibly` is true, and the other three are false. The doubt is 0.5 m for regions within 500 km of their
-middle, 5 m within 1,000 km, and 0.12 % of the radius of each circle, which is drawn as a polygon of 64 corners. Farther
-regions, and regions over a pole, are refused. Places, and entities with a certain position, are compared exactly.
+middle, and 5 m within 1,000 km. A circle, drawn as a polygon of 64 corners, adds 0.12 % of its radius. Farther regions,
+and regions over a pole, are refused. Places, and entities with a certain position, are compared exactly.
 
 Two vehicles that were sent to one place are not apart, unless their altitudes are: both go to one point.
 """
