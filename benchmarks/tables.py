@@ -26,6 +26,8 @@ RATIOS = {
 }
 """What is compared with the patrol in SPIN, by the heads of its columns."""
 
+LIBRARIES = ("python", "numba", "numpy")
+
 Kept = dict[str, Any]
 
 
@@ -52,7 +54,7 @@ def patrol_tables(kept: Kept) -> str:
         f"start ({start['size']})|import, load|compile|learn|search, load loops|whole process",
     )
     tables = (_table(head, rows) for head, rows in zip(heads, (tools, beside, phases), strict=True))
-    return "\n".join([*tables, machine(kept)])
+    return "\n".join([*tables, machine(kept, "spin", "gcc")])
 
 
 def _ratio(ratios: Kept, name: str) -> str:
@@ -171,13 +173,14 @@ def _table(head: str, rows: Iterable[Sequence[str]]) -> str:
     return "".join(f"| {' | '.join(line)} |\n" for line in lines)
 
 
-def machine(kept: Kept) -> str:
-    """Say on what was measured."""
+def machine(kept: Kept, *peers: str) -> str:
+    """Return a line about the machine, with the versions of our libraries and of the peers."""
     on = kept["machine"]
-    versions = ", ".join(f"{name} {version}" for name, version in on["versions"].items())
+    numbers = {name: re.search(r"\d+(\.\d+)+", on["versions"].get(name, "")) for name in (*LIBRARIES, *peers)}
+    versions = ", ".join(f"{name} {number[0]}" for name, number in numbers.items() if number)
     return (
         f"Measured {on['day']} on {on['processor']}, {on['cores']} cores, {on['memory_gb']} GB, load average"
-        f" {on['load_average']} at the start; {versions}.\n"
+        f" {on['load_average']}; {versions}.\n"
     )
 
 

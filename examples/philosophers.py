@@ -53,6 +53,5 @@ if __name__ == "__main__":
         print(found)
         print(shown("no deadlock", found.no_deadlock()))
         print(shown("neighbours never eat together", found.always(are_apart)))
-        print(shown("one can eat", found.reachable(lambda state: 2 in state)))
         print(shown("the first eats at last", found.ltl("<> first", first=lambda state: state[0] == 2)))
         print(shown("the first may eat again", found.ctl("AG EF first", first=lambda state: state[0] == 2)))

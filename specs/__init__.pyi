@@ -1,5 +1,5 @@
 from .codes import Code as Code
-from .codes import code_table as code_table
+from .codes import code_list as code_list
 from .codes import explain as explain
 from .codes import find_code as find_code
 from .diagnostics import Diagnostic as Diagnostic

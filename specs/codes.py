@@ -49,8 +49,8 @@ class Code(Enum):
     CONTROL_CHARACTER = (
         "LS003",
         "control character",
-        """A mission file contains no control characters except tabs and line ends. This is
-        probably not a mission file, or it is in UTF-16.""",
+        """A mission file contains no control characters except tabs and line ends. Is it a mission file, and
+        not in UTF-16?""",
     )
     WORD_TOO_LONG = (
         "LS004",
@@ -61,8 +61,8 @@ class Code(Enum):
     NESTED_TOO_DEEPLY = (
         "LS005",
         "nested too deeply",
-        """Brackets, blocks and operators nest at most two hundred levels deep. Define behaviours
-        with `def`, name values with `let`, and split long conditions.""",
+        """Brackets, blocks and operators nest at most two hundred deep. Define behaviours with `def`, name
+        values with `let`, and split long conditions.""",
     )
     TOO_MANY_WORDS = (
         "LS006",
@@ -73,8 +73,7 @@ class Code(Enum):
     UNREADABLE_FILE = (
         "LS007",
         "unreadable file",
-        """The mission file, or a file it names with `from`, is missing, is not a file or may not be
-        read.""",
+        """The mission file, or a file it names with `from`, is missing, is no file or may not be read.""",
     )
     # --- LS1: syntax
     UNEXPECTED = (
@@ -95,8 +94,7 @@ class Code(Enum):
     UNOPENED_BRACKET = (
         "LS104",
         "bracket never opened",
-        """A closing bracket has no opening one. Usually there is one too many, or the opening one was
-        commented out.""",
+        """A closing bracket has no opening one: there is one too many, or the opening one is commented out.""",
     )
     UNCLOSED_STRING = (
         "LS105",
@@ -107,14 +105,14 @@ class Code(Enum):
     UNKNOWN_CHARACTER = (
         "LS106",
         "unknown character",
-        """This character has no meaning here. Strings need straight double quotes, not typographic ones. Of operators
-        there are `+`, `-`, comparisons, `and`, `or`, `not`, `in` and `of`.""",
+        """This character has no meaning here. Strings need straight double quotes. The operators are `+`, `-`,
+        comparisons, `and`, `or`, `not`, `in` and `of`.""",
     )
     MISSING_ARROW = (
         "LS107",
         "branch without '=>'",
-        """A case is written `case pattern => statements`, with a guard `case pattern if condition =>
-        statements`, and the branch behind all cases of a `react` `after 10 min => statements`.""",
+        """A case is written `case pattern => statements`, or `case pattern if condition => statements`, and the
+        branch behind all cases of a `react` `after 10 min => statements`.""",
     )
     SINGLE_EQUALS = (
         "LS108",
@@ -129,8 +127,8 @@ class Code(Enum):
     MISSPELT_KEYWORD = (
         "LS110",
         "no word of the language",
-        """This word is unknown here. It is close to a known one (upper and lower case differ), or it belongs to
-        another language: the hint gives the form of this language.""",
+        """This word is close to a known one (upper and lower case differ), or belongs to another language: the
+        hint gives the form of this language.""",
     )
     RESERVED_WORD = (
         "LS111",
@@ -140,8 +138,8 @@ class Code(Enum):
     BAD_NUMBER = (
         "LS112",
         "bad number",
-        """Coordinates and lengths are finite decimal numbers, such as `37.04`, `-8.59` or `4e2`; counts
-        and the numbers of expressions are whole.""",
+        """Coordinates and lengths are finite decimal numbers, such as `37.04`, `-8.59` or `4e2`; counts and
+        numbers in expressions are whole.""",
     )
     MISSING_RECIPIENT = (
         "LS113",
@@ -172,15 +170,14 @@ class Code(Enum):
     MISSING_UNIT = (
         "LS118",
         "number without a unit",
-        """Lengths are in metres or kilometres: `400 m`, `1.5 km`. Durations are in seconds, minutes or hours: `90 s`,
-        `10 min`, `1.5 h`, or in milliseconds. Speeds are in metres a second, kilometres an hour or knots: `18 m/s`,
-        `65 km/h`, `35 kn`.""",
+        """Lengths have the units `400 m` and `1.5 km`, durations `100 ms`, `90 s`, `10 min` and `1.5 h`, speeds
+        `18 m/s`, `65 km/h` and `35 kn`.""",
     )
     MISPLACED_STATEMENT = (
         "LS119",
         "statement outside a behaviour",
-        """Statements belong in the body of a bigActor, `BigActor a hosted_at h with_behavior { ... }`, or
-        of a behaviour, `def b() = { ... }`.""",
+        """Statements belong in the body of a bigActor, `BigActor a hosted_at h with_behavior { ... }`, or of a
+        behaviour, `def b() = { ... }`.""",
     )
     MISSING_BRACE = (
         "LS120",
@@ -203,7 +200,7 @@ class Code(Enum):
         "LS123",
         "entity without a kind",
         """An entity is declared with its kind, and then its placement: `uav0: UAV = point (37.08, -8.55)`. A
-        parameter of a rule has a kind too: `rule land(u: UAV, b: Location) { ... }`.""",
+        parameter of a rule has a kind, too: `rule land(u: UAV, b: Location) { ... }`.""",
     )
     BAD_COORDINATE = (
         "LS124",
@@ -240,36 +237,34 @@ class Code(Enum):
     UNKNOWN_KIND = (
         "LS202",
         "unknown kind",
-        """A kind is used that no signature declares. `signature standard` declares the kinds of the paper: Location,
+        """No signature declares this kind; only its first use is reported. `signature standard` declares Location,
         OilSpill, UAV, Vessel, Tanker, Drifter and Station. Others are declared by `signature { kind Tug driven }`, or
-        beside those, `signature standard { kind Tug driven  kind Location contains Tug }`. A kind is reported once,
-        where it is used first.""",
+        beside those, `signature standard { kind Tug driven  kind Location contains Tug }`.""",
     )
     DUPLICATE_NAME = (
         "LS203",
         "name declared twice",
         """Entities, kinds, bigActors and channels all have different names; so do rules among each other, and
-        behaviours. `region` and `unknown` are reserved: they are an observation's words for the place of a node in
-        no place, and of an unseen node.""",
+        behaviours. `region` and `unknown` are reserved for observations.""",
     )
     WRONG_SORT = (
         "LS204",
         "name of another sort",
-        """The name is declared as something that is not allowed here: a bigActor where a node is expected, or a
+        """The name belongs to something that is not allowed here: a bigActor where a node is expected, or a
         kind where an entity is.""",
     )
     UNUSABLE_NAME = (
         "LS205",
         "name that cannot be written",
-        """An entity read from a file has a name that cannot be written in a mission. Names are letters, digits
-        and `_`, a letter first, and no reserved word.""",
+        """An entity in a file has a name that a mission cannot have: letters, digits and `_`, a letter first,
+        and no reserved word.""",
     )
     # --- LS3: world and geometry
     BAD_GEOMETRY = (
         "LS301",
         "no geometry on the earth",
         """Latitudes are between -90 and 90 degrees, longitudes between -180 and 180; borders do not cross
-        themselves; the radius of a circle is positive; an altitude band begins with its lower end.""",
+        themselves; a radius is positive; an altitude band begins with its lower end.""",
     )
     NO_WHEREABOUTS = (
         "LS302",
@@ -291,21 +286,19 @@ class Code(Enum):
     PLACES_OVERLAP = (
         "LS305",
         "places that do not nest",
-        """Two places that never move, each of a kind that may contain something, must nest or be disjoint:
-        otherwise an entity in both has no unique parent.""",
+        """Two places that never move, of kinds that may contain something, must nest or be disjoint: otherwise
+        an entity in both has no unique parent.""",
     )
     BAD_FILE = (
         "LS306",
         "mistake in a world file",
-        """A file named with `from` has a mistake, or the clauses after it do not fit its format. The message names
-        the mistake.""",
+        """A file named with `from` has a mistake, or the clauses after it do not fit its format.""",
     )
     TOO_MANY_ENTITIES = (
         "LS307",
         "too many entities",
-        """A mission has at most two thousand entities, and its entities and places make at most 1.2 million pairs (a
-        thousand places) to test for containment. Reduce a file with `within` (an area), `keep` (some kinds) or `limit`
-        (a number).""",
+        """A mission has at most two thousand entities, and 1.2 million pairs of an entity and a place. Reduce a
+        file with `within` (an area), `keep` (some kinds) or `limit` (a number).""",
     )
     MISSING_EXTRA = (
         "LS308",
@@ -332,8 +325,7 @@ class Code(Enum):
     UNBOUNDED_RECURSION = (
         "LS403",
         "recursion that is not a tail call",
-        """A behaviour may call itself, or a behaviour that calls it, only as its last statement. Otherwise the
-        rest of the program grows without bound.""",
+        """A behaviour may call itself, or a behaviour that calls it, only as its last statement.""",
     )
     EMPTY_LOOP = (
         "LS404",
@@ -348,23 +340,22 @@ class Code(Enum):
     WRONG_QUERY = (
         "LS406",
         "query without an answer",
-        """`HOSTED_AT(q)` yields bigActors, which have no parents, children or links. So it can only be the
+        """`HOSTED_AT(q)` yields bigActors, which have no parents, children or links: it can only be the
         outermost relation of a query.""",
     )
     WRONG_VALUE = (
         "LS407",
         "value of another type",
         """A value of this type is not allowed here: a condition is true or false, `size` counts a set or an
-        observation, `MOVE_HOST_TO` needs an entity, `send` a bigActor. Types are inferred through variables,
-        arguments, patterns and messages; a line in brackets gives the variable that value. It is a mistake only
-        where no possible value is allowed.""",
+        observation, `MOVE_HOST_TO` needs an entity, `send` a bigActor. Types are inferred; a line in brackets
+        gives the variable that value. It is a mistake only where no possible value is allowed.""",
     )
     BAD_FAMILY = (
         "LS408",
         "family that cannot be written out",
-        """A family has a member for each entity of a kind, or of a set or a route of entities that names each once:
-        `BigActor patrol[i] for u in UAV ...`, `for u in [uav1, uav0]`. Written out, the members of all families may
-        have at most a hundred thousand words together.""",
+        """A family has a member for each entity of a kind, or of a set or a route that names each once:
+        `BigActor patrol[i] for u in UAV ...`, `for u in [uav1, uav0]`. Written out, all members have at most a
+        hundred thousand words together.""",
     )
     # --- LS5: reaction rules
     RULE_SYNTAX = (
@@ -376,14 +367,14 @@ class Code(Enum):
     CREATES_OR_DELETES = (
         "LS502",
         "rule that creates or deletes",
-        """Controls move and link existing nodes; nothing creates or deletes a node. Both sides of a rule name the
-        same nodes, and each node has a name.""",
+        """Nothing creates or deletes a node. Both sides of a rule name the same nodes, and each node has a
+        name.""",
     )
     MOVED_CONTENT = (
         "LS503",
         "rule that moves unknown content",
-        """A site `$0` stands for the other contents of a node. In missions, contents do not move: a site is
-        under the same node on both sides.""",
+        """A site `$0` stands for the other contents of a node. Contents do not move: a site is under the same
+        node on both sides.""",
     )
     UNPLACED_NODE = (
         "LS504",
@@ -427,14 +418,14 @@ class Code(Enum):
     INEXACT_DRIFT = (
         "LS603",
         "drift within that would not be exact",
-        """`drifts within` replaces infinitely many placements by finitely many. That is exact for one entity among
-        places that do not move. Otherwise list placements: `drifts among`.""",
+        """`drifts within` replaces infinitely many placements by finitely many. That is exact for one entity
+        among places that do not move. Otherwise list placements: `drifts among`.""",
     )
     POINTLESS_CLAUSE = (
         "LS604",
         "clause that can never apply",
-        """The environment can never do this: bring in an entity that is present already, or return an entity to
-        a channel that it was never on.""",
+        """The environment can never do this: bring in an entity that is present, or return an entity to a
+        channel that it was never on.""",
     )
     NO_RECIPIENT = (
         "LS605",
@@ -449,10 +440,9 @@ class Code(Enum):
     FORMULA_TOO_LARGE = (
         "LS607",
         "formula too large",
-        """Quantifiers are written out, and `<->` doubles its sides. After that, the properties of a mission may have
-         at most fifty thousand atoms. Parts of `invariant`, `reachable` and `within` about entities alone are not
-        written out: `forall x, y: UAV . x != y -> forall c: Cell . not (x in c and y in c)` may be asked of fifty
-        vehicles on two hundred places. It may ask two hundred thousand atoms of a configuration.""",
+        """Quantifiers are written out, and `<->` doubles its sides. After that, the properties of a mission
+        have at most fifty thousand atoms. Parts of `invariant`, `reachable` and `within` about entities alone
+        are not written out, and may ask two hundred thousand atoms of a configuration.""",
     )
     NOT_QUANTIFIED = (
         "LS608",
@@ -463,8 +453,9 @@ class Code(Enum):
     NOT_CONSTANT = (
         "LS609",
         "value that is not constant",
-        """A message of `says`, the value behind `=` in a pattern (`=uav0`), and a value that a property compares a
-        variable with, is constant: a text, number, truth value, name, or a tuple or set of these.""",
+        """A message of `says`, the value behind `=` in a pattern (`=uav0`), and a value that a property
+        compares a variable with, are constants: texts, numbers, truth values, names, tuples or sets of
+        these.""",
     )
     TOO_MANY_MISTAKES = (
         "LS610",
@@ -475,9 +466,9 @@ class Code(Enum):
     WRONG_LOGIC = (
         "LS611",
         "operator of another logic",
-        """`invariant` and `reachable` are about single configurations. `ltl` is about every run: `[]`, `<>`, X, U, R
-        and W in any combination, and `taken`, without A and E. `ctl` is about the tree of runs: each path operator
-        directly follows A or E. `env` and `say` are steps of no bigActor.""",
+        """`invariant` and `reachable` are about single configurations. `ltl` is about every run: `[]`, `<>`, X,
+        U, R, W and `taken`, without A and E. In `ctl` each path operator directly follows A or E. `env` and
+        `say` are steps of no bigActor.""",
     )
 
     NOT_COMPARABLE = (
@@ -490,57 +481,57 @@ class Code(Enum):
     BAD_TIME_LIMIT = (
         "LS612",
         "time limit out of bounds",
-        """The time that a `react` waits before its `after` branch, and a time limit of the `live` section, are more
-        than zero, and at most a week.""",
+        """The time of an `after` branch, and a time limit of the `live` section, is more than zero, and at most
+        a week.""",
     )
 
     EMPTY_MISSION = (
         "LS614",
         "nothing to check",
-        """The file declares nothing, so there is nothing to check or to fly. Is it the right file?""",
+        """The file declares nothing to check or to fly. Is it the right file?""",
     )
 
     NO_BIGACTOR = (
         "LS615",
         "mission without a bigActor",
-        """A mission without bigActors can be shown, and recordings can be replayed in its places, but a verdict on it
-        would be empty.""",
+        """A mission without bigActors can be shown, and recordings can be replayed in its places, but a verdict
+        on it would be empty.""",
     )
 
     BAD_RANGE = (
         "LS616",
         "length out of bounds",
-        """A distance between entities is above 0 m. The greatest distance of a vehicle from its way (`strays`) is at
-        most 100 km, and at least the diameter of the circles that it flies.""",
+        """A distance between entities is above 0 m. `strays` is at most 100 km, and at least the diameter of
+        the vehicle's circles.""",
     )
 
     NOT_A_PLACE = (
         "LS617",
         "place without an inside",
-        """`possibly x in p` and `surely x in p` ask for a place p: an entity with an area, or one that carries x. Of an
-        entity that is a point ask for a distance: `x at least 50 m from p`, `x within 3 km of p`.""",
+        """`possibly x in p` and `surely x in p` ask for a place p: an entity with an area, or one that carries
+        x. For a point ask for a distance: `x at least 50 m from p`, `x within 3 km of p`.""",
     )
 
     NOT_UNDER_WAY = (
         "LS618",
         "region of control that takes no time",
-        """`possibly`, `surely`, `at least` and `within` are about ways, and with `control atomic` nothing is under way.
-        Write `control timed`.""",
+        """`possibly`, `surely`, `at least` and `within` are about ways. With `control atomic` nothing is under
+        way: write `control timed`.""",
     )
 
     TOO_MANY_MISSED = (
         "LS619",
         "too many entities to miss",
-        """An observation may miss any of the entities in view that `observe may miss` names, so each of them doubles
-        its answers. The clauses of a mission may name at most eight entities.""",
+        """Each entity that `observe may miss` names doubles the answers of an observation. The clauses of a
+        mission name at most eight entities.""",
     )
     # --- LS7: warnings
     NOTHING_QUANTIFIED = (
         "LS701",
         "quantifier over nothing",
-        """A property quantifies over a kind that has no entity, or over bigActors that do not exist: `forall` is
-        always true, `exists` never. Or a family of such a kind has no member. Declare one (an entity may be `absent`
-        at first), or quantify over others.""",
+        """A property quantifies over a kind that has no entity, or over bigActors that do not exist: `forall`
+        is always true, `exists` never. Or a family has no member. Declare one (an entity may be `absent` at
+        first), or quantify over others.""",
     )
 
     FAR_FROM_THE_REST = (
@@ -554,45 +545,44 @@ class Code(Enum):
     TWO_TYPES = (
         "LS703",
         "variable of two types",
-        """A variable is given values of different types, and one of them cannot be taken where the variable is used.
+        """A variable has values of different types, and one of them is not allowed where the variable is used.
         It is no mistake if the other one is always there then; use a variable for each.""",
     )
 
     ALWAYS_THE_SAME = (
         "LS704",
         "comparison that is always the same",
-        """Values of different types are never equal, and a set or an observation has no members of that type. A text is
-        never equal to a name: `"base"` is a text, `base` the name of an entity.""",
+        """Values of different types are never equal, and a set or an observation has no members of that type.
+        `"base"` is a text, `base` the name of an entity.""",
     )
 
     NEVER_INSIDE = (
         "LS706",
         "containment that the signature forbids",
-        """A formula asks whether one entity is in another, which is always false: the other kind neither contains nor
-        carries it, nor anything that could contain it.""",
+        """A formula asks whether one entity is in another, which is always false: the other kind neither
+        contains nor carries it, nor anything that could contain it.""",
     )
 
     PROBABLY_SWAPPED = (
         "LS705",
         "probably all swapped",
-        """All of a world seems to have latitude and longitude exchanged: everything that floats (a Vessel, a Boat)
-        stands on land, 100 km from any water, or everything is far out at sea, and exchanged it would be near a
-        coast. Missions use (latitude, longitude), GeoJSON uses [longitude, latitude]. Rivers and canals
-        are not known: nearer to a coast, boats on land are taken to be on one.""",
+        """Everything that floats (a Vessel, a Boat) stands on land, 100 km from any water, or everything is far
+        out at sea and would be near a coast with latitude and longitude exchanged. Missions use (latitude,
+        longitude), GeoJSON uses [longitude, latitude]. Rivers and canals are not known.""",
     )
 
     BOUNDS_NOTHING = (
         "LS707",
         "bound that is impossible or unused",
-        """A line of `timing` is about a kind that has no entity; or a vehicle lasts for less than the shortest
-        flight from its place of restoration to any other place.""",
+        """A line of `timing` is about a kind that has no entity; or a vehicle lasts for less than its shortest
+        flight.""",
     )
 
     NEVER_WAITS = (
         "LS708",
         "loop that asks and never waits",
-        """The requests of the loop pile up. An exploration stops at more than 64 requests of one bigActor
-        (`--max-pending`). Let each turn wait for its answer.""",
+        """The requests of the loop pile up, and an exploration stops at 64 of one bigActor (`--max-pending`).
+        Let each turn wait for its answer.""",
     )
 
     MAY_CROSS = (
@@ -607,8 +597,8 @@ class Code(Enum):
     HIDES_AN_ENTITY = (
         "LS710",
         "pattern that takes anything for an entity's name",
-        """A name in a pattern is a new variable, which takes any value. One that is called like an entity hides it in
-        the case. `=spill` compares; another name takes any value.""",
+        """A name in a pattern is a new variable, which takes any value, and hides an entity of that name.
+        `=spill` compares; another name takes any value.""",
     )
 
     ONE_POINT = (
@@ -623,8 +613,8 @@ class Code(Enum):
     BAD_DURATION = (
         "LS801",
         "duration or speed out of bounds",
-        """Durations in `timing` and deadlines are whole numbers of ticks, and at most a week. A tick is a second
-        unless the section sets another, `tick 100 ms`: a whole number of milliseconds. Speeds are above 0 m/s.""",
+        """Durations in `timing` and deadlines are whole numbers of ticks, and at most a week. A tick is a
+        second unless the section sets another: `tick 100 ms`. Speeds are above 0 m/s.""",
     )
     EMPTY_INTERVAL = (
         "LS802",
@@ -646,8 +636,8 @@ class Code(Enum):
     UNTIMED_PROPERTY = (
         "LS805",
         "property that is not decided in time",
-        """`ltl`, `ctl`, `progress` and `fairness` are about runs without times. With `timing`, ask for a bounded
-        response, `within 5 min "answered": F leads to G`, or check the mission without that section.""",
+        """`ltl`, `ctl`, `progress` and `fairness` are about runs without times. With `timing`, ask for a
+        bounded response, `within 5 min "answered": F leads to G`, or check the mission without that section.""",
     )
     NOT_IN_ENVIRONMENT = (
         "LS806",
@@ -686,12 +676,14 @@ def explain(code: Code) -> str:
     return f"{code.number}: {code.title} ({code.range})\n\n{code.explanation}\n"
 
 
-def code_table() -> str:
-    """Return the table of all codes in Markdown, for the documentation."""
-    rows = sorted((code.number, code.title, code.explanation) for code in Code)
-    lines = [f"| {number} | {title} | {_cell(text)} |" for number, title, text in rows]
-    return "\n".join(["| code | mistake | meaning and remedy |", "| --- | --- | --- |", *lines]) + "\n"
+def code_list() -> str:
+    """Return all codes in Markdown, by their ranges, for the documentation."""
+    codes = sorted(Code, key=lambda code: code.number)
+    return "\n".join(
+        f"## {number}xx: {subject}\n\n{''.join(map(_item, (code for code in codes if code.range == subject)))}"
+        for number, subject in RANGES.items()
+    )
 
 
-def _cell(text: str) -> str:
-    return text.replace("|", "\\|")
+def _item(code: Code) -> str:
+    return f"- **{code.number}**, {code.title}: {code.explanation}\n"

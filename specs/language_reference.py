@@ -15,17 +15,16 @@ from specs.standard_signature import STANDARD
 INTRODUCTION: Final = """\
 # The mission language
 
-A mission is one text file in UTF-8. Outside strings, white space and line ends only separate words. `//` and `#` begin
-comments, which end with the line. `;` may separate declarations and statements. Line numbers in front of a program,
-such as those of the paper's Figure 8, are ignored.
+This page has every construct of a mission: its form and meaning, its grammar, and an example. The examples are parts of
+one mission, [whole.mission](whole.mission), in the layout of `bigactors fmt`; that of [timing](#timing) is a part of
+`endurance`, which ships. [codes.md](codes.md) lists the mistakes, with their remedies.
 
-A file has at most one megabyte and sixty thousand words; a word has at most ten kilobytes; brackets nest at most two
-hundred deep. [codes.md](codes.md) lists the diagnostics, with meaning and remedy.
+A mission is one text file in UTF-8, of at most one megabyte. Outside strings, white space only separates words. `//`
+and `#` begin comments, which end with the line. `;` may separate declarations and statements. Line numbers in front of
+a program, such as those of the paper's Figure 8, are ignored.
 
 The grammar is in EBNF: words in quotes are literal, `[x]` is optional, `x*` repeats any number of times, `x+` at least
-once. `bigactors fmt` writes a mission in the layout used here. The examples are parts of one mission,
-[whole.mission](whole.mission), which reads [a file](#a-file-of-places). That of [timing](#timing) is a part of
-`endurance`, which ships.
+once.
 """
 
 REGIONS: Final = """\
@@ -36,19 +35,18 @@ and `within` ask for regions, in missions with `control timed`. Rules never do: 
 
 - Where the mission or a clause puts an entity, and no control could have, its region is that point or shape.
 - An entity that drifts within a place may be anywhere in its face of that place.
-- A vehicle that a control has left in a place may be anywhere in that place, since it still flies to its waypoint.
-- A vehicle on its way may be on every shortest line from where it was, by its VIA, to its destination: it may begin
+- A vehicle that a control has left in a place may be anywhere in that place.
+- A vehicle on its way may be on every shortest line from its place, by its VIA, to its destination: it may begin
   and end anywhere in these places. If one of them may move, it may be on a line between any two points of them.
 - With `strays at most D`, a vehicle keeps within D of the shortest lines between its waypoints, and of its last one.
   Without it, D is the diameter of its circles (`circles 80 m` of radius), or 0, and a way is as wide as its places.
 - Cargo has the region of its carrier.
 - The altitudes of an entity are its own band, from take-off to landing, and all altitudes without a band. On the way
-  from or to a carrier, the band also has the altitudes of that.
+  from or to a carrier, the carrier's altitudes belong to the band.
 
-In doubt `possibly` is true, and the other three are false. The doubt is 0.5 m within 500 km of the middle of what is
-compared, and 5 m within 1,000 km, and 0.12 % more of the radius of each circle, which is drawn as a polygon of 64
-corners. Farther regions, and regions over a pole, are refused. Places, and entities whose
-position is certain, are compared exactly.
+In doubt `possibly` is true, and the other three are false. The doubt is 0.5 m for regions within 500 km of their
+middle, and 5 m within 1,000 km. A circle, drawn as a polygon of 64 corners, adds 0.12 % of its radius. Farther regions,
+and regions over a pole, are refused. Places, and entities with a certain position, are compared exactly.
 
 Two vehicles that were sent to one place are not apart, unless their altitudes are: both go to one point.
 """
@@ -56,17 +54,16 @@ Two vehicles that were sent to one place are not apart, unless their altitudes a
 MISSES: Final = """\
 ## Observations that miss
 
-A sensor may fail to see what is there. With `observe may miss OilSpill` each observation has one answer for each set of
-spills that it may leave out: `sense` is a choice among them. The trace says which was taken: `missing oilSpill0`.
+With `observe may miss OilSpill` each observation has one answer for each set of spills that it may leave out: `sense`
+is a choice among them. The trace names it: `missing oilSpill0`.
 
-- The answer is that of a world from which the missed entities have vanished with their cargo: L_q = q(A(P ∖ M)). So a
-  missed entity is not shown, `L ⊕ L_q` sends it to the region if it was believed in a searched place, and what is in a
-  missed place is seen in the place around that.
+- The answer is that of a world from which the missed entities have vanished with their cargo: L_q = q(A(P ∖ M)). So
+  `L ⊕ L_q` sends a missed entity to the region if it was believed in a searched place, and the content of a missed
+  place is seen in the place around it.
 - Only entities that the answer would show are missed: one observation of n of them has 2ⁿ answers. A mission may name
   eight entities (LS619).
-- No agent misses its own host, or what carries that. `HOSTED_AT` alone misses no agent.
-- What an observation shows is there. Nothing bounds how often one entity is missed, and no fairness ends it: a mission
-  that waits until it sees something may wait for ever, and one that takes a miss for a proof is wrong.
+- No agent misses its own host, or its host's carrier. `HOSTED_AT` alone misses no agent.
+- An entity that an observation shows is there. Nothing bounds how often one is missed, and no fairness ends it.
 - Every observer may miss the entity. A race is about the world's answer: a miss by itself makes no test stale.
 """
 

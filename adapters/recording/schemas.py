@@ -19,7 +19,7 @@ _TEXT: Final = {"type": "string"}
 _NUMBER: Final = {"type": "number"}
 _OPTIONAL: Final = {"type": ["string", "null"]}
 _BY: Final = {**_TEXT, "description": "The operator's name; empty if unknown."}
-_TIME: Final = {**_NUMBER, "description": "In seconds since 1970 UTC."}
+_TIME: Final = _NUMBER
 _TEXTS: Final = {"type": "array", "items": _TEXT}
 _OBSERVED: Final = {
     "type": "object",
@@ -98,7 +98,7 @@ RUN: Final = _object(
         "type": ["number", "null"],
         "exclusiveMinimum": 0,
         "description": "Seconds of the run in one of the clock on the wall: 1 unless time is simulated, null for "
-        "as many as can be computed.",
+        "as many as possible.",
     },
     station={
         "type": ["object", "null"],
@@ -116,15 +116,14 @@ ARRIVAL: Final = _object(
     altitude=BAND,
     channels=_TEXTS,
     carried_by=_TEXT,
-    time={**_NUMBER, "description": "When it was observed, in seconds since 1970 UTC."},
+    time={**_NUMBER, "description": "When it was observed."},
     velocity={"type": "array", "items": _NUMBER, "description": "Metres a second, degrees from true north."},
     time_to_live=_NUMBER,
     gone={"type": "boolean", "const": True},
 )
 
 LEFT_OUT: Final = _object(
-    "How many arrivals were not recorded, of an entity or of all that the mission does not name: more came in a second "
-    "than are written.",
+    "How many arrivals were not recorded, of an entity or of all that the mission does not name.",
     ("plugin", "entity", "arrivals"),
     plugin=_TEXT,
     entity={**_TEXT, "description": "Empty for all that the mission does not name."},
@@ -141,7 +140,7 @@ STEP: Final = _object(
     shown={**_TEXTS, "description": "The output of `display`."},
     date={
         "type": "number",
-        "description": "The time of another station's step, by the clock here, in seconds since 1970 UTC.",
+        "description": "The time of another station's step, by the clock here.",
     },
     digest={**_TEXT, "description": "Of the cells that it wrote, with their values."},
 )
@@ -152,7 +151,7 @@ DEADLINE: Final = _object(
     agent=_TEXT,
     until={
         "type": ["number", "null"],
-        "description": "In seconds since 1970 UTC; null once it waits no longer.",
+        "description": "Null once it waits no longer.",
     },
 )
 
@@ -161,7 +160,7 @@ CLOCKS: Final = _object(
     ("began", "rested"),
     began={
         "type": "number",
-        "description": "The start of the mission, in seconds since 1970 UTC, plus the time without listening.",
+        "description": "The start of the mission, plus the time without listening.",
     },
     rested={
         "type": "number",
@@ -270,8 +269,8 @@ GIVEN_BACK: Final = _object(
 )
 
 ORDER: Final = _object(
-    "An operator ordered a vehicle, several, or all, to hold or to return. The commands have the same requests, and a "
-    "report `Accepted` or `Arrived` of such a request confirms it, `Rejected` says why not.",
+    "An operator ordered vehicles to hold or to return. The commands have the same requests, and a report `Accepted` "
+    "or `Arrived` of such a request confirms it.",
     ("order", "vehicle", "by", "requests", "refusal"),
     order={"type": "string", "enum": ["hold", "return"]},
     vehicle={

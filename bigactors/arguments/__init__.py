@@ -26,7 +26,7 @@ examples:
   bigactors check --watch patrol.mission     check it at every save
 
 bigactors COMMAND --help describes a command, with examples. FILE is a mission file, or the name of a mission that
-ships. --color auto colours terminals without NO_COLOR, and pipes with FORCE_COLOR."""
+ships. Each command has --color, too: auto colours terminals without NO_COLOR, and pipes with FORCE_COLOR."""
 
 GONE: Final = {
     "bigactors check --hash-compact": "it is gone, since a configuration takes some 24 bytes: --max-memory SIZE "
@@ -128,10 +128,7 @@ def _unknown(word: str, parser: Parser) -> Mistake:
     if not word.startswith("-"):
         return Mistake(f"'{word:.60}' is one argument too many", f"see {parser.prog} --help")
     option = word.partition("=")[0]
-    known = parser.format_usage().replace("[", " ").replace("]", " ").split()
-    hint = GONE.get(f"{parser.prog} {option}") or suggestion(
-        option, (each for each in known if each.startswith("--"))
-    )
+    hint = GONE.get(f"{parser.prog} {option}") or suggestion(option, parser.options())
     return Mistake(f"unknown option '{word:.60}'", hint or f"see {parser.prog} --help")
 
 

@@ -21,7 +21,7 @@ SOURCE: Final = """\
 VARIATION: Final = f"""\
 replace parts of the mission
   --scheduler {{program_order,unordered,fcfs}}  the order of requests (default: the mission's)
-  --control {{atomic,timed}}  controls are one step (atomic) or take time (timed; default: the mission's)
+  --control {{atomic,timed}}  whether controls take time (default: the mission's)
 {SOURCE}"""
 
 FOREIGN_NAMES: Final = """\

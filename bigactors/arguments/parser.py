@@ -3,16 +3,44 @@
 import argparse
 import re
 import textwrap
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from importlib import import_module
-from typing import NoReturn, Protocol, cast, runtime_checkable
+from typing import Final, NoReturn, Protocol, cast, runtime_checkable
 
 from bigactors.exits import Exit
 from bigactors.mistakes import Mistake
 
+SHARED: Final = frozenset({"help", "color"})
+"""Arguments of every command: only the help of `bigactors` itself lists them."""
+
 
 class Help(argparse.RawDescriptionHelpFormatter):
-    """Wraps lines between words: options stay whole, and indented lines of a description stay separate."""
+    """Wraps lines between words: options stay whole, and indented lines of a description stay separate.
+
+    The usage has the arguments that a line must have; optional ones are listed below it.
+    """
+
+    def add_usage(
+        self,
+        usage: str | None,
+        actions: Iterable[argparse.Action],
+        groups: Iterable[argparse._MutuallyExclusiveGroup],  # noqa: ARG002 - argparse's signature
+        prefix: str | None = None,
+    ) -> None:
+        """Add the usage, with `[options]` for all options that are listed."""
+        listed = [action for action in actions if self._is_listed(action)]
+        needed = [action for action in listed if action.required or not action.option_strings]
+        if usage is None and len(needed) < len(listed):
+            self._prog += " [options]"
+        super().add_usage(usage, needed, [], prefix)
+
+    def add_argument(self, action: argparse.Action) -> None:
+        """Add the help of an argument."""
+        if self._is_listed(action):
+            super().add_argument(action)
+
+    def _is_listed(self, action: argparse.Action) -> bool:
+        return action.help != argparse.SUPPRESS and not (action.dest in SHARED and " " in self._prog)
 
     def _split_lines(self, text: str, width: int) -> list[str]:
         return _wrapped(" ".join(text.split()), width)
@@ -63,6 +91,11 @@ class Parser(argparse.ArgumentParser):
             help="colours: always, never or auto (default)",
         )
         self.color = False  # since Python 3.14 argparse colours help, and so would the pages of docs/
+
+    def options(self) -> list[str]:
+        """Return the long names of its options."""
+        shown = [action for action in self._actions if action.help != argparse.SUPPRESS]
+        return [name for action in shown for name in action.option_strings if name.startswith("--")]
 
     def error(self, message: str) -> NoReturn:
         """Raise a parsing error as a mistake of the user."""

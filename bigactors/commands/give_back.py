@@ -10,18 +10,15 @@ from bigactors.terminal import say, tell
 
 DESCRIPTION: Final = """\
 Let a running mission command a vehicle again after a take-over (by a pilot, another station, a fail-safe, a reboot or
-an operator's order hold or return), or after a refused command. The mission sends its last command again, in whatever
-mode the vehicle is: look first.
-
-With --at, accept another address of a vehicle on an unsigned link. A vehicle that was taken over stays so until it is
-given back without --at."""
+an operator's order), or after a refused command. The mission sends its last command again, in whatever mode the vehicle
+is: look first."""
 
 EXAMPLES: Final = ("bigactors give-back uav0", "bigactors give-back uav0 --at 192.168.1.7:14555")
 
 ARGUMENTS: Final = f"""\
   vehicle VEHICLE  a vehicle of the running mission
-  --at HOST:PORT  accept the vehicle at this address from now on, instead of its silent old one, and do not command
-      it again
+  --at HOST:PORT  accept the vehicle on an unsigned link at this address, instead of its silent old one, and do not
+      command it again
 {SPEAKER}
 {SOCKET}"""
 

@@ -16,14 +16,12 @@ if TYPE_CHECKING:
     from adapters.live.operator_socket import Fates
 
 DESCRIPTION: Final = """\
-Order a vehicle to hold its position; a plane circles.
-The order is sent at once; to a silent vehicle, as soon as it is heard. The mission then does not command the vehicle
-until `bigactors give-back VEHICLE`: requests to it stay pending, and no position is an arrival. The rest of the mission
-goes on. `--all` leaves out vehicles that a pilot or a fail-safe has taken over; an order by name overrules them. Order
-another station's vehicle at that station.
+Order a vehicle to hold its position; a plane circles. The order is sent at once; to a silent vehicle, as soon as it is
+heard. The mission then does not command the vehicle until `bigactors give-back VEHICLE`. An order by name overrules a
+pilot or a fail-safe, `--all` does not. Order another station's vehicle at that station.
 
 The command waits 10 s. Its exit code is 0 if the vehicle obeys, 1 if it refuses, 3 if neither is known. A refused order
-is repeated until the vehicle obeys, and the run then prints a line."""
+is repeated until the vehicle obeys."""
 
 EXAMPLES: Final = ("bigactors hold uav0", "bigactors hold --all --by Ana")
 

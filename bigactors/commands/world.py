@@ -14,8 +14,6 @@ and count the data that was left out, by kind."""
 EXAMPLES: Final = (
     "bigactors world harbour.geojson --output harbour.svg",
     "bigactors world harbour.geojson vessels.nmea --at 2020-04-07T21:42:00Z --kinds Vessel,Harbour",
-    "bigactors world survey.plan harbour.geojson",
-    "bigactors world vessels.nmea --at 2020-04-07T21:42:00Z --output vessels.geojson",
     "bigactors world vessels.nmea --within 52.83,5.66,52.87,5.72",
 )
 

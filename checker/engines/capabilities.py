@@ -228,10 +228,9 @@ def pair_of(one: Feature, other: Feature) -> UnsupportedPair | None:
     return next((pair for pair in UNSUPPORTED if {pair.one, pair.other} == {one, other}), None)
 
 
-def unsupported_table() -> str:
-    """Return the table as a table of Markdown."""
-    rows = "".join(
-        f"| `{pair.one.value}` | `{pair.other.value}` | {pair.why.value} | {pair.reason} |\n"
+def unsupported_list() -> str:
+    """Return the table as a list of Markdown."""
+    return "".join(
+        f"- `{pair.one.value}` with `{pair.other.value}` ({pair.why.value}): {pair.reason}\n"
         for pair in UNSUPPORTED
     )
-    return f"| | with | | reason |\n| --- | --- | --- | --- |\n{rows}"

@@ -11,12 +11,12 @@ WORDS: Final[Mapping[str, str]] = {
         The property is false. A shortest trace leads to the violation: replay it with
         `bigactors replay`, or step through its page (`check --trace DIR`).""",
     "incomplete": """
-    The search stopped at a limit (exit code 3). This is no success: raise the limit, bound the mission's environment,
-    or reduce the search with `--reduce`.""",
+        The search stopped at a limit (exit code 3). This is no success: raise the limit, bound the mission's
+        environment, or use `--reduce`.""",
     "complete": "All reachable configurations were explored.",
     "configuration": """
-    ⟨α | S | η⟩: the bigActors with their remaining programs, the logical and the physical model, and the pending
-    requests. `check` counts the reachable ones.""",
+        ⟨α | S | η⟩: the bigActors with their remaining programs, the logical and the physical model, and the
+        pending requests.""",
     "transition": "A step from one configuration to another by one rule.",
     "depth": """
         The length of the shortest run to the configuration that was found last.""",
@@ -27,14 +27,14 @@ WORDS: Final[Mapping[str, str]] = {
         A trace to an examined case that satisfies the property: so the property is not vacuous.""",
     "examined": "The number of cases of a property that were met and satisfy it.",
     "vacuous": """
-    The property holds, but is weaker than it seems: its case never occurs, or one of its parts is never needed. Look
-    for a mistake in it, or in the mission.""",
+        The property holds, but is weaker than it seems: its case never occurs, or one of its parts is never
+        needed. Look for a mistake.""",
     "never needed": """
-    The property holds with any formula in the place of that part, so the part has no effect. Usually its condition is
-    never true, or another part implies it. Look for a mistake in it, or leave it out.""",
+        The property holds with any formula in the place of that part. Usually its condition is never true, or
+        another part implies it. Look for a mistake in it, or leave it out.""",
     "by ownership": """
-    Race-freedom was shown without a search: no bigActor may write anything that another's control reads, tests or
-    writes. It holds whatever the order of steps.""",
+        Race-freedom was shown without a search: no bigActor may write anything that another's control reads,
+        tests or writes.""",
     "at rest": """
     Only the environment can move. This is no deadlock if each bigActor has ended, or waits at the `react` of an
     outermost `loop` or for a message of `says`.""",
@@ -51,8 +51,8 @@ WORDS: Final[Mapping[str, str]] = {
     A control is next in line, and its redex does not match L: its assumptions are wrong. Observe before it, and test
     the observation.""",
     "inconsistent": """
-    A control is next in line, and L no longer agrees with P, since no observation followed the change. Observe the
-    nodes of the control just before it, or prevent the change.""",
+        A control is next in line, and L no longer agrees with P. Observe the nodes of the control just before
+        it, or prevent the change.""",
     "unrealisable": """
     A control is next in line, and no change of the world makes its reactum true: the node is not driven, or its new
     place may not contain it or has no room.""",
@@ -60,11 +60,11 @@ WORDS: Final[Mapping[str, str]] = {
         Two controls are enabled, and serving one disables the other, or the two orders end
         differently. Let one bigActor do both, or let one wait for a message of the other.""",
     "stale-observation race": """
-    A control depends on the answer to an observation, and another bigActor's control has changed that answer since.
-    Both acted on old observations. Let one bigActor decide, or pass the permission on by messages.""",
+        A control depends on the answer to an observation, and another bigActor's control has changed that
+        answer since. Let one bigActor decide, or pass the permission on by messages.""",
     "deadlock": """
-    Only the environment can move, and a request is pending or a bigActor waits. The message names each waiting bigActor
-    and its cause: a message without a sender, or a missing link.""",
+        Only the environment can move, and a request is pending or a bigActor waits. The message names each
+        cause: a message without a sender, or a missing link.""",
     "not arrived": """
     Only flights are left, and they need not end. Where a vehicle always arrives, declare it in the environment: `uav0
     arrives`.""",
@@ -83,11 +83,10 @@ WORDS: Final[Mapping[str, str]] = {
     "critical path": """
         The successive steps that add up to a date: the duration of each, its bound, and its line of `timing`.""",
     "zone": """
-    A set of ages of the running clocks, in one configuration. Missions with `timing` are explored by zones where
-    counting ticks takes long.""",
+        A set of ages of the running clocks, in one configuration: the fast engine explores missions with
+        `timing` by zones.""",
     "tick": """
-        The unit of time, of which all durations of a mission are whole numbers: `tick 100 ms`, a second
-        without it.""",
+        The unit of time, of which all durations are whole numbers: `tick 100 ms`, a second without it.""",
     "diverges": """
         A computation reaches no command: a loop runs for ever without observing, controlling or
         receiving.""",
@@ -109,8 +108,8 @@ WORDS: Final[Mapping[str, str]] = {
         in P.""",
     "MGR": "A bigActor that wants to move to another host: `migrate` serves it where the hosts are linked.",
     "possibly": """
-    `possibly uav0 in place0`: somewhere on its way, or at rest, uav0 may be in place0. To stay out is `not possibly
-    uav0 in place0`. In doubt it is true.""",
+        `possibly uav0 in place0`: on its way, or at rest, uav0 may be in place0. To stay out is `not possibly
+        uav0 in place0`. In doubt it is true.""",
     "surely": """
     `surely uav0 in place0`: uav0 is in place0 wherever it may be on its way, or at rest. In doubt it is false.""",
     "at least": """
@@ -152,9 +151,8 @@ PROPERTIES: Final[Mapping[str, str]] = {
         each of `G`, `F`, `X` and `U` directly follows `A` or `E`.""",
     "progress": "Every request is served in every fair run. Otherwise there is an *unserved request*.",
     "within": """
-    A proposition becomes true in time on every run, counted from the start: `within 40 min "name": formula`. With `F
-    leads to G`, G follows in time whenever F is true. All bounds of `timing` are assumptions of the verdict.
-    Between names it compares distances: `uav0 within 3 km of gcs0`.""",
+        A proposition becomes true in time on every run: `within 40 min "name": formula`. With `F leads to G`, G
+        follows in time whenever F is true. Between names it compares distances: `uav0 within 3 km of gcs0`.""",
     "endurance": """
     No vehicle is ever away from its place of restoration for longer than it lasts, by the bounds of the section
     `timing`.""",
@@ -188,10 +186,11 @@ def find_word(asked: str) -> tuple[str, str] | None:
     return word, " ".join((PROPERTIES.get(word) or WORDS[word]).split())
 
 
-def word_table() -> str:
-    """Return the table of all words but the rules, in Markdown, for the documentation."""
-    rows = [f"| {word} | {' '.join(text.split())} |" for word, text in {**PROPERTIES, **WORDS}.items()]
-    return "\n".join(["| word | meaning |", "| --- | --- |", *rows]) + "\n"
+def word_list() -> str:
+    """Return all words but the rules, in Markdown, for the documentation."""
+    return "".join(
+        f"- **{word}**: {' '.join(text.split())}\n" for word, text in {**PROPERTIES, **WORDS}.items()
+    )
 
 
 def _found(asked: str) -> str | None:

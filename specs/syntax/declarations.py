@@ -49,8 +49,7 @@ class Definition(Node):
 class BigActor(Node):
     """`BigActor a hosted_at uav0 with_behavior { ... }`.
 
-    An agent. The name is optional, as in the paper's Figure 8. `with_behavior visit(oilSpill0)` is short for
-    `with_behavior { visit(oilSpill0) }`.
+    An agent. The name is optional. `with_behavior visit(oilSpill0)` is short for `with_behavior { visit(oilSpill0) }`.
     """
 
     name: Name | None
@@ -63,9 +62,9 @@ class Family(Node):
     """`BigActor patrol[i] for u in UAV hosted_at u with_behavior visit(u, i)`.
 
     A family of agents: one for each entity of a kind, or of a set or a route of entities. A member is named after its
-    entity, `patrol[uav0]`, so its name shows where it acts. In its body, `u` is that entity, and `i` the member's
-    number, from 0: in the order of a route, else of the entities' names. `BigActor patrol[u] for u in ...` has no
-    number. The host may be `u`, or an entity that hosts all members.
+    entity, `patrol[uav0]`. In its body, `u` is that entity, and `i` the member's number, from 0: in the order of a
+    route, else of the entities' names. `BigActor patrol[u] for u in ...` has no number. The host may be `u`, or an
+    entity that hosts all members.
     """
 
     name: Name
@@ -83,8 +82,8 @@ class Family(Node):
 class DriftsAmong(Node):
     """`oilSpill0 drifts among circle (37.0, -8.7) radius 400 m, searchArea1`.
 
-    The entity may move to any of these placements at any time; a place stands for its centroid. An entity that is
-    absent, carried or in transit does not drift. After a flight, a vehicle drifts again from its destination.
+    The entity may move to any of these placements at any time, unless it is absent, carried or in transit. A place
+    stands for its centroid. After a flight, a vehicle drifts again from its destination.
     """
 
     entity: Name
@@ -160,8 +159,7 @@ class Strays(Node):
     """`UAV strays at most 30 m`, `uav0 strays at most 30 m`: the farthest distance of a vehicle from its way.
 
     The way is the shortest line between the points to which it is sent; take-off, turns and wind are included. The
-    clause of a vehicle replaces that of its kind. It bounds [regions](#regions), and a run
-    watches it.
+    clause of a vehicle replaces that of its kind. It bounds [regions](#regions), and a run watches it.
     """
 
     vehicle: Name
@@ -172,8 +170,7 @@ class Strays(Node):
 class Misses(Node):
     """`observe may miss OilSpill, boat0`: an observation may leave out these entities, although they are there.
 
-    A kind stands for all its entities. An [observation that misses](#observations-that-miss) an entity is as if the
-    entity, with its cargo, were not there. No agent misses its own host.
+    A kind stands for all its entities ([observations that miss](#observations-that-miss)).
     """
 
     entities: tuple[Name, ...]

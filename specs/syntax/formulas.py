@@ -31,7 +31,7 @@ class Quantified(Node):
 
     All entities of a kind, or some; all bigActors; the members of a family. F extends as far as possible. `agents
     with_behavior visit` are the bigActors declared or spawned with it. `agents hosted_at Y` are those that Y, or an
-    entity of the kind Y, hosts at that moment. A spawned bigActor counts from its spawning on.
+    entity of the kind Y, hosts at that moment.
     """
 
     quantifier: str
@@ -169,9 +169,8 @@ class SameName(Node):
 class Stored(Node):
     """`a.x == 3`, `a.x < 3`, `a.x <= 3`, `a.x > 3`, `a.x >= 3`: compare agent a's variable x with a value.
 
-    The variable keeps its last value to the end of the run. Before it has a value, the comparison neither violates nor
-    fulfils a property ([temporal.md](temporal.md#variables-in-properties)).
-    `<`, `<=`, `>` and `>=` compare numbers only.
+    Before it has a value, the comparison neither violates nor fulfils a property
+    ([temporal.md](temporal.md#variables-in-properties)).
     """
 
     agent: Agent
@@ -242,8 +241,7 @@ class PathQuantifier(Node):
 class Steps(Node):
     """`sense a`, `a`, `sense`, `agents`, `rules`, `requests`, `environment`.
 
-    The steps of a bigActor by one rule, all its steps, all steps by one rule, those of the bigActors, or those of the
-    environment. [temporal.md](temporal.md#fairness) lists the meaning of each under fairness.
+    Sets of steps; [temporal.md](temporal.md#fairness) has the meaning of each.
     """
 
     words: tuple[Agent, ...]
@@ -325,8 +323,8 @@ class TemporalProperty(Node):
 class FairDeadlockFreedom(Node):
     """`deadlock_freedom under weak fairness of env`, `deadlock_freedom "but for the link" under weak fairness of env`.
 
-    No fair run stays for ever in states where work is left and only the environment can move. So a promised change of
-    the world that leads on, such as the return of a link that `drops and returns`, prevents a deadlock.
+    No fair run stays for ever in states where work is left and only the environment can move
+    ([temporal.md](temporal.md#deadlock-under-fairness)).
     """
 
     fairness: tuple[Fairness, ...]
@@ -338,7 +336,7 @@ class Progress(Node):
     """`progress`, `progress under strong fairness of actuate`.
 
     Every pending request is eventually served, under weak fairness of each rule and request, and the added fairness.
-    Flights end only if the environment has `arrives`. A name is optional: `progress "served in time"`.
+    A name is optional: `progress "served in time"`.
     """
 
     fairness: tuple[Fairness, ...] = ()

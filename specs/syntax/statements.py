@@ -51,9 +51,8 @@ class Duration(Node):
 class After(Node):
     """`after 10 min => statements`: the statements of an agent that has waited so long at a `react`.
 
-    It stands behind the cases. The step `timeout` is possible while no case takes any received observation or message;
-    those stay in the mailbox. A live run takes it after that time. A check without times takes it at any moment of the
-    wait.
+    It stands behind the cases. The step `timeout` is possible while no case takes any received observation or message.
+    A live run takes it after that time, a check without times at any moment of the wait.
     """
 
     duration: Duration

@@ -46,9 +46,9 @@ class Speeds(Node):
 class Motion(Node):
     """`UAV flies at 18 m/s to 25 m/s, climbs at 2 m/s to 5 m/s, circles 80 m`.
 
-    The speeds of the vehicles of a kind, or of one vehicle (`uav0 flies at ...`), which take precedence. The speeds
-    over ground and the distances on the map give each flight its shortest and its longest time. `climbs` is required if
-    altitudes differ on the way. `circles` gives the radius of circles for vehicles that cannot stand still.
+    The speeds over ground of the vehicles of a kind, or of one vehicle (`uav0 flies at ...`), which take precedence.
+    With the distances on the map they give each flight its shortest and its longest time. `climbs` is required if
+    altitudes differ on the way. `circles` is the radius of circles for vehicles that cannot stand still.
     """
 
     name: Name

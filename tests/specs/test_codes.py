@@ -2,7 +2,7 @@
 
 import re
 
-from specs.codes import RANGES, Code, code_table, explain, find_code
+from specs.codes import RANGES, Code, code_list, explain, find_code
 
 
 def test_numbers_are_unique_and_in_a_known_range():
@@ -24,5 +24,5 @@ def test_a_code_is_found_by_its_number_in_either_case():
     assert explain(Code.MISSING_ARROW).startswith("LS107: branch without '=>' (syntax)\n\nA case is written")
 
 
-def test_the_table_has_a_row_for_each_code():
-    assert code_table().count("\n") == len(Code) + 2
+def test_the_list_has_each_code():
+    assert code_list().count("\n- **LS") == len(Code)

@@ -13,9 +13,7 @@ Storm. A search that a limit stops is incomplete: exit code 3."""
 EXAMPLES: Final = (
     "bigactors big full sensor_network --html network.html",
     "bigactors big full --storm network --max-states 100000 network.big",
-    "bigactors big sim --seed 7 --until 20 network.big",
     "bigactors big sim --runs 10000 --plot network.svg network.big",
-    "bigactors big check --never collision network.big",
     "bigactors big check --ltl 'request leads to answer' --ctl 'AG EF idle' network.big",
     "bigactors big check --storm 'Pmax=? [F delivered]' network.big",
 )

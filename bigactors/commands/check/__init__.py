@@ -17,7 +17,6 @@ EXAMPLES: Final = (
     "bigactors check --watch oil_spill.mission",
     "bigactors check --no-traces specs/missions/*.mission",
     "bigactors check --json - oil_spill.mission | jq '.properties[] | [.name, .verdict]'",
-    "bigactors check --trace traces --max-time 60 handover.mission",
     "bigactors check --output junit:report.xml --output sarif:report.sarif specs/missions/*.mission",
 )
 
@@ -39,8 +38,8 @@ report
   --violations N = 5  print at most N different violations of each property, and count the others
   --times  print the earliest and the latest moment at which each flight of a mission with timing begins and ends,
       and each time property is first true
-  --ways  print the way of each flight leg by leg: its length, its distance from each place that a property about
-      ways names, and the least distance of two vehicles that may be under way together
+  --ways  print the way of each flight leg by leg: its length, its distance from places that properties name, and the
+      least distance of two vehicles under way together
   --no-traces  print a short report, without traces
   --all  print whole traces and all warnings (default: about a screen of each mission)
 
@@ -58,8 +57,8 @@ exploring
       by the mission's size)
   --threads N  let the fast engine use at most N threads, with the same results for every N (default: one a core;
       with --reduce por one)
-  --clock {{local,global}} = local  explore a mission with timing by zones of local time, one clock for each process,
-      where that is sound (not under fcfs, with spawn or with --reduce symmetry), or by one clock for all
+  --clock {{local,global}} = local  explore a mission with timing by one clock for each process, where that is sound
+      (not under fcfs, with spawn or with --reduce symmetry), or by one clock for all
   --reduce NAMES  visit fewer configurations, where that is sound: por (partial-order reduction), symmetry, or
       por,symmetry (default: none; docs/explanation/reduction.md)
 

@@ -27,7 +27,6 @@ events that its environment section does not permit, and the bigraph at the end.
 EXAMPLES: Final = (
     "bigactors replay traces/oil_spill/over_the_spill-witness/trace.json",
     "bigactors replay run.json --mission changed.mission",
-    "bigactors replay run.mcap --speed 10",
     "bigactors replay run.mcap --report flight.html",
     "bigactors replay run.json --waypoints uav0=uav0.plan",
     "bigactors replay flight.tlog --mission oil_spill --name mavlink:1=uav0",

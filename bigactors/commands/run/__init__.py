@@ -10,13 +10,12 @@ from bigactors.exits import Exit
 DESCRIPTION: Final = """\
 Fly a mission: the verified rules move one configuration, as telemetry and feeds permit. A run begins only with a
 verdict on exactly this mission under 'control timed' that everything holds (check --verdict), and in a world as in the
-mission's environment section. A broken assumption, an invariant about ways that is false of what is seen, a refused
-command and a late report are printed at once.
+mission's environment section. A broken assumption or invariant, a refused command and a late report are printed at
+once.
 
 exit codes:
   0  the mission came to its end
-  1  an assumption or an invariant about ways broke, the recording or a plugin failed, or the world at the
-     beginning was not the mission's
+  1  an assumption or an invariant broke, the recording or a plugin failed, or the first world was not the mission's
   2  a mistake in the input, no verdict, or a silent vehicle
   3  stopped before its end, by --for, Ctrl-C, SIGTERM or SIGHUP; each vehicle goes on with its last command"""
 
@@ -37,8 +36,8 @@ vehicles and feeds
       places, detections, locations, ros, and those of `bigactors plugins`; may be repeated
   --misses SHARE[,SEED]  simulate a sensor that misses, with the probability SHARE in each look, an entity that the
       mission lets observations miss (observe may miss OilSpill)
-  --publish ros=ADDRESS  publish the physical and the logical model for ROS 2, through the Zenoh router at ADDRESS
-      (tcp:HOST:PORT[?domain=N]; docs/how-to/ros.md)
+  --publish ros=ADDRESS  publish the physical and the logical model for ROS 2, through the Zenoh router at
+      tcp:HOST:PORT[?domain=N] (docs/how-to/ros.md)
 
 one of several stations (docs/how-to/stations.md)
   --station NAME[=ID]  NAME alone: this run is the station NAME, and executes its bigActors; with ID, the MAVLink
@@ -67,8 +66,8 @@ reports of feeds and vehicles
       (default: all of AIS; of detections, the mission's kinds that are not driven); may be repeated
   --time-to-live FEED=SECONDS  the seconds for which a position is valid without a newer one; the defaults are
       {", ".join(f"{feed} ({time:.0f})" for feed, time in LIVING.items())}; may be repeated
-  --token FILE  accept only posted detections with the token in FILE (Authorization: Bearer ...); default: no token,
-      and detections=http:PORT accepts posts from this machine only
+  --token FILE  accept posted detections only with the token in FILE (Authorization: Bearer ...; default: no token, and
+      posts from this machine only)
 
 recording and console
   --record FILE  record the run into FILE (MCAP), and every MAVLink frame into a telemetry log beside it (.tlog)

@@ -24,10 +24,8 @@ EXAMPLES: Final = (
     "bigactors show oil_spill.mission --output oil_spill.png",
     "bigactors show oil_spill.mission --trace run.json --step 3",
     "bigactors show endurance.mission --timeline --output endurance.png",
-    "bigactors show --trace run.json --lanes",
     "bigactors show --trace run.json --output run.html",
     "bigactors show --trace run.mcap --output tracks.geojson",
-    "bigactors show --trace run.json --against other.json",
     "bigactors show oil_spill --trace flight.tlog --name mavlink:1=uav0 --output flight.html",
 )
 

@@ -16,4 +16,4 @@ def test_a_file_in_the_documentation_is_read(text):
 
 
 def test_every_code_is_documented():
-    assert all(f"| `{code}` | {meaning} |\n" in PAGE for code, meaning in CODES.items())
+    assert all(f"\n- `{code}`: {meaning}\n" in PAGE for code, meaning in CODES.items())
