@@ -1,9 +1,13 @@
-"""What is compiled for other loops alone is called by nobody else."""
+"""A loop is compiled once, and an inner loop is called by loops alone."""
 
 import ast
 from pathlib import Path
 
+import numpy as np
 import pytest
+from numba import types
+
+from checker.engines.fast.jit_decorators import njit
 
 ROOT = Path(__file__).parents[4]
 READ = [
@@ -78,3 +82,16 @@ def test_inner_loops_are_called_by_loops_alone(trees):
 def test_a_call_from_elsewhere_is_seen(call):
     trees = {"a.b": ast.parse("@inner(cache=True)\ndef loop(): pass"), "c": ast.parse(call)}
     assert inner_loops(trees) <= set(mentioned("c", trees["c"]))
+
+
+def test_a_loop_is_compiled_once_for_integers_of_any_kind():
+    @njit()
+    def double(number):
+        return 2 * number
+
+    @njit()
+    def sums(numbers, number):
+        return double(1) + double(number) + double(numbers[0])
+
+    assert sums(np.array([3], np.int32), 2) == 12
+    assert double.signatures == [(types.int64,)]
