@@ -179,6 +179,7 @@ class _Search:
             if self.is_due:
                 self.tidy()
             if not self.go_on():
+                assert self.limits.states is not None
                 raise SearchEnd(f"the limit of {counted(self.limits.states, 'state')} was reached")
             self.look()
 

@@ -19,7 +19,7 @@ import numpy as np
 from checker.engines.timed.zone_answers import ZoneTimes
 from checker.engines.zones.local_automata import Division, LocalAutomaton, Wrong
 from checker.engines.zones.local_states import LocalStates
-from checker.engines.zones.observers import Observer, ObserverClock
+from checker.engines.zones.observers import Observer
 from checker.engines.zones.timed_automaton import Constraint, Edge, TimedAutomaton
 from semantics.properties.kinds import PropertyKind
 from semantics.properties.property import Property
@@ -166,7 +166,9 @@ def _division(times: ZoneTimes, question: _Question) -> Division:
         states = LocalStates(network, network.participants, np.arange(len(network.automaton)))
         return Division(network.automaton, states, times.reached)
     assert observer.participants is not None
-    states = LocalStates(network, observer.participants, observer.locations.astype(np.int64), observer.watches.astype(np.int64))
+    states = LocalStates(
+        network, observer.participants, observer.locations.astype(np.int64), observer.watches.astype(np.int64)
+    )
     return Division(observer.automaton, states, np.arange(len(observer.locations)))
 
 
