@@ -41,7 +41,7 @@ def for_wide_integers(compile_for: Callable[[Any], Any]) -> Callable[[Any], Any]
 def widened(argument: Any) -> Any:
     """Return the type of an argument, with signed integers of 64 bits."""
     found: Any = types.unliteral(argument)  # type: ignore[no-untyped-call]  # numba ships no types
-    return types.int64 if isinstance(found, types.Integer) and found.signed else found
+    return types.int64 if found in types.signed_domain else found
 
 
 def inner(**options: Any) -> Callable[[Loop], Loop]:
