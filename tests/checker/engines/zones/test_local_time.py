@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 from checked_missions import load
 from hypothesis import HealthCheck, assume, given
-from scale import examples
+from scale import examples, seeds
 from shipped import TIMED
 from timed_missions import timed_missions
 from timed_reports import assert_alike
+from timed_texts import text_of
 
 from checker import Engine, Keeping, Limits, ZoneClock, check, explore
 from checker.engines.fast.decision_leaves import FIRST, LEAF
@@ -62,6 +63,15 @@ def test_a_generated_mission_has_the_same_configurations_in_local_time(c):
     limits = Limits(configurations=400)
     assume(explore(c, engine=Engine.FAST, clock=ZoneClock.GLOBAL, limits=limits).complete)
     assert_same(c)
+
+
+@seeds(400, 30)
+def test_a_generated_text_gets_the_same_report_in_local_time(seed):
+    mission = load(text_of(seed), "")
+    right = check(mission, limits=Limits(configurations=120), engine=Engine.FAST, clock=ZoneClock.GLOBAL)
+    if not right.complete:
+        pytest.skip("too large")
+    assert_alike(right, check(mission, engine=Engine.FAST))
 
 
 CROWDED = """
