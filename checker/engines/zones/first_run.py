@@ -11,7 +11,7 @@ import numpy as np
 from checker.engines.zones.difference_bounds import close
 from checker.engines.zones.earliest_dates import Dates, TimedState, Zone
 from checker.engines.zones.shortest_run import LeadsOn, RestOfRun, ShortestRun
-from checker.engines.zones.zone_search import Search
+from checker.engines.zones.zone_search import CHUNK, Search
 from checker.limits import look
 
 Wanted = Callable[[int], list[Zone]]
@@ -31,7 +31,7 @@ def run_of(search: Search, wanted: Wanted, length: int) -> Dates:
 
     def found(asked: LeadsOn | None) -> Iterator[tuple[int, ...]]:
         route = ShortestRun(automaton, search.location, search.ages, length, ends)
-        for group in route.groups_at_end(look, asked, search.count):
+        for group in route.groups_at_end(look, asked, max(search.count, CHUNK)):
             if any(meets(route, zone, wanted) for zone in route.zones_of(group)):
                 yield route.steps_to(group)
 
