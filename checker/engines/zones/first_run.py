@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from functools import partial
+from itertools import chain
 
 import numpy as np
 
 from checker.engines.zones.difference_bounds import close
 from checker.engines.zones.earliest_dates import Dates, TimedState, Zone
-from checker.engines.zones.shortest_run import RestOfRun, ShortestRun
-from checker.engines.zones.zone_search import Search
+from checker.engines.zones.shortest_run import LeadsOn, RestOfRun, ShortestRun
+from checker.engines.zones.zone_search import CHUNK, Search
 from checker.limits import look
 
 Wanted = Callable[[int], list[Zone]]
@@ -27,15 +28,16 @@ def run_of(search: Search, wanted: Wanted, length: int) -> Dates:
     """Return the first run of a number of steps to a goal that fewer steps don't reach."""
     automaton = search.automaton
     ends = sorted({search.place(zone) for zone in search.layer(length) if meets(search, zone, wanted)})
-    route = ShortestRun(automaton, search.location, search.ages, length, ends)
-    group = next(
-        group
-        for group in route.groups_at_end(
-            look, partial(leads_on, wanted) if search.is_local else None, search.count
-        )
-        if any(meets(route, zone, wanted) for zone in route.zones_of(group))
-    )
-    return Dates(automaton, TimedState(search.location, search.ages), route.steps_to(group), wanted)
+
+    def found(asked: LeadsOn | None) -> Iterator[tuple[int, ...]]:
+        route = ShortestRun(automaton, search.location, search.ages, length, ends)
+        for group in route.groups_at_end(look, asked, max(search.count, CHUNK)):
+            if any(meets(route, zone, wanted) for zone in route.zones_of(group)):
+                yield route.steps_to(group)
+
+    asked = (partial(leads_on, wanted), None) if search.is_local else (None,)
+    steps = next(chain.from_iterable(map(found, asked)))
+    return Dates(automaton, TimedState(search.location, search.ages), steps, wanted)
 
 
 def leads_on(wanted: Wanted, route: ShortestRun, group: int) -> bool:

@@ -46,7 +46,7 @@ class ShortestRun(Search):
         self.groups.room[:GROUP] = -1, -1, 0
 
     def groups_at_end(
-        self, look: Callable[[], None], leads_on: LeadsOn | None = None, patience: int = CHUNK
+        self, look: Callable[[], None], leads_on: LeadsOn | None, patience: int
     ) -> Iterator[int]:
         """Yield the groups after all steps, in order.
 
