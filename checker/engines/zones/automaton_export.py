@@ -92,7 +92,7 @@ class ExportedAutomaton(NamedTuple):
     shared: tuple[tuple[str, tuple[int, ...]], ...] = ()
 
 
-class _Question(NamedTuple):
+class AskedAutomaton(NamedTuple):
     """An automaton with the question of a property.
 
     Attributes:
@@ -118,15 +118,16 @@ def model_of(
 ) -> ExportedAutomaton:
     """Return a mission's automaton; with a deadline or an endurance, `WRONG` is reachable exactly if it is violated.
 
-    If `divided`, it has a process for each one of local time; the search must have been in local time.
+    If `divided`, it has a process for each one of local time, where that is possible.
 
     Raises:
         ValueError: The property is of another kind.
     """
-    question = _question(times, asked)
+    question = question_of(times, asked)
     subjects = (*times.network.clocks_of, None)  # the last one is an observer's
-    if divided:
-        found = _division(times, question).divided(question.first, question.ages, question.wrong)
+    division = division_of(times, question) if divided else None
+    if division is not None:
+        found = division.divided(question.first, question.ages, question.wrong)
         processes = (
             _Walk(each, subjects, f"x{number}_", "e").process() for number, each in enumerate(found.processes)
         )
@@ -141,33 +142,39 @@ def model_of(
     return ExportedAutomaton(name, asked, (_Walk(whole, subjects, "x", "s", words).process(),))
 
 
-def _question(times: ZoneTimes, asked: Property | None) -> _Question:
+def question_of(times: ZoneTimes, asked: Property | None) -> AskedAutomaton:
+    """Return a mission's automaton with the question of a property.
+
+    Raises:
+        ValueError: The property is of another kind than deadlines and endurance.
+    """
     network = times.network
     match None if asked is None else asked.kind:
         case None | PropertyKind.ENDURANCE:
             locations = times.reached.tolist() if asked else []
             wrong = {at: tuple(times.exhaustion(at).values()) for at in locations}
-            return _Question(network.automaton, network.first, network.first_ages, wrong)
+            return AskedAutomaton(network.automaton, network.first, network.first_ages, wrong)
         case PropertyKind.WITHIN:
             assert asked is not None
             observer = times.observer(asked)
             goals = ((at, observer.automaton.location(at).goal) for at in range(len(observer.automaton)))
             late = {at: [goal] for at, goal in goals if goal is not None}
-            return _Question(observer.automaton, 0, observer.first_ages(), late, observer)
+            return AskedAutomaton(observer.automaton, 0, observer.first_ages(), late, observer)
         case _:
             raise ValueError("only deadlines and endurance are exported")
 
 
-def _division(times: ZoneTimes, question: _Question) -> Division:
-    """Return the division of an automaton among the processes of local time."""
+def division_of(times: ZoneTimes, question: AskedAutomaton) -> Division | None:
+    """Return the division of an automaton among the processes of local time; None if it was not searched so."""
     network, observer = times.network, question.observer
+    participants = network.participants if observer is None else observer.participants
+    if participants is None or not times.search.is_local:
+        return None
     if observer is None:
-        assert network.participants is not None
-        states = LocalStates(network, network.participants, np.arange(len(network.automaton)))
+        states = LocalStates(network, participants, np.arange(len(network.automaton)))
         return Division(network.automaton, states, times.reached)
-    assert observer.participants is not None
     spots = np.array([(location, list(ObserverClock).index(watch)) for location, watch in observer.spots])
-    states = LocalStates(network, observer.participants, spots[:, 0], spots[:, 1])
+    states = LocalStates(network, participants, spots[:, 0], spots[:, 1])
     return Division(observer.automaton, states, np.arange(len(spots)))
 
 
