@@ -67,7 +67,7 @@ def run(options: Namespace) -> Exit:
     except TickError as error:
         raise Mistake(str(error), "give timing a larger tick, or shorter times", options.file) from error
     assert isinstance(found.times, ZoneTimes)
-    divided = options.format == "tchecker" and found.times.search.is_local
+    divided = options.format == "tchecker" and clock is ZoneClock.LOCAL
     try:
         model = model_of(found.times, asked, mission.name, divided=divided)
     except ValueError as error:
@@ -78,8 +78,9 @@ def run(options: Namespace) -> Exit:
     else:
         write_text(options.out, text)
         tell(f"{options.out} written")
-    if options.format == "tchecker" and clock is ZoneClock.LOCAL and not divided:
-        tell(f"it has a single process: {why_global(mission.initial) or 'its dates are too far apart'}")
+    if divided and len(model.processes) == 1:
+        reason = why_global(mission.initial) or "it was not possible to search it in local time"
+        tell(f"it has a single process: {reason}")
     return Exit.HOLDS if found.complete else Exit.INCOMPLETE
 
 

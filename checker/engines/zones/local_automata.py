@@ -6,7 +6,7 @@ steps whose events its local states allow.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache, cached_property
 from typing import NamedTuple
@@ -132,6 +132,10 @@ class Division:
         mine = {process, NONE} if process in self._timekeepers else {process}
         return [index for index, clock in enumerate(running, 1) if self._owners[clock] in mine]
 
+    def clocks_of(self, at: int, process: int) -> list[int]:
+        """Return the indices of a process's clocks in a location."""
+        return self._clocks(self._running[at], process)
+
     @cached_property
     def _running(self) -> list[tuple[int, ...]]:
         """The clocks that run in each location."""
@@ -178,16 +182,20 @@ class Division:
     ) -> LocalAutomaton:
         states, automaton = self.states.numbers[process], TimedAutomaton()
         _, shown = np.unique(np.array(states), return_index=True)
-        violated: dict[int, Sequence[Constraint]] = {}
-        for state, at in enumerate(shown.tolist()):
+        for at in shown.tolist():
             running = self._running[at]
             indices = self._clocks(running, process)
             mine = [each for each in self.automaton.deadlines_of(at) if each[2] == process]
             deadlines = tuple((indices.index(clock) + 1 if clock else 0, most) for clock, most, _ in mine)
             automaton.add(Location(tuple(running[each - 1] for each in indices), deadlines))
-            late = [each for each in wrong.get(at, ()) if each.clock in indices]
-            violated[state] = [each._replace(clock=indices.index(each.clock) + 1) for each in late]
         for state in range(len(automaton)):
             automaton.leave(state, edges.get(state, ()))
-        begun = tuple(ages[each - 1] for each in self._clocks(self._running[first], process))
+        begun = tuple(ages[each - 1] for each in self.clocks_of(first, process))
+        violated = {states[at]: self._own(at, process, tests) for at, tests in wrong.items()}
         return LocalAutomaton(self.states.name(process), automaton, states[first], begun, violated)
+
+    def _own(self, at: int, process: int, tests: Iterable[Constraint]) -> list[Constraint]:
+        """Return the constraints in a location that are on a process's clocks."""
+        indices = self.clocks_of(at, process)
+        mine = (each for each in tests if each.clock in indices)
+        return [each._replace(clock=indices.index(each.clock) + 1) for each in mine]

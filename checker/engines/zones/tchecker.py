@@ -8,13 +8,8 @@ import re
 from collections.abc import Iterator, Sequence
 from typing import Final
 
-from checker.engines.zones.automaton_export import (
-    WRONG,
-    ExportedAutomaton,
-    ExportedEdge,
-    ExportedLocation,
-    ExportedProcess,
-)
+from checker.engines.zones.automaton_export import ExportedAutomaton
+from checker.engines.zones.exported_process import WRONG, ExportedEdge, ExportedLocation, ExportedProcess
 
 STAY: Final = "stay"
 """The clock that stops time in the urgent locations of a process."""

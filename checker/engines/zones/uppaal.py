@@ -3,12 +3,8 @@
 from collections.abc import Iterator, Sequence
 from xml.sax.saxutils import escape, quoteattr
 
-from checker.engines.zones.automaton_export import (
-    WRONG,
-    ExportedAutomaton,
-    ExportedEdge,
-    ExportedLocation,
-)
+from checker.engines.zones.automaton_export import ExportedAutomaton
+from checker.engines.zones.exported_process import WRONG, ExportedEdge, ExportedLocation
 
 DOCUMENT_TYPE = (
     "<!DOCTYPE nta PUBLIC '-//Uppaal Team//DTD Flat System 1.2//EN' "

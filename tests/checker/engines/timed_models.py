@@ -25,14 +25,14 @@ def timed_verdicts(verdicts):
     return [each for each in verdicts if each.property.kind in (PropertyKind.WITHIN, PropertyKind.ENDURANCE)]
 
 
-def written(c, asked, *, divided=False):
+def written(c, asked):
     found = explore(c, engine=Engine.FAST)
-    return model_of(found.times, asked, "a mission", divided=divided)
+    return model_of(found.times, asked, "a mission")
 
 
-def agree(c, asked, judge, *, divided=False):
+def agree(c, asked, judge):
     for verdict in timed_verdicts(check(c, asked).verdicts):
-        assert judge(written(c, verdict.property, divided=divided)) is verdict.outcome
+        assert judge(written(c, verdict.property)) is verdict.outcome
 
 
 EQUAL = """

@@ -13,18 +13,17 @@ from timed_models import (
     found_by_tchecker,
     questions,
     reached_by_tchecker,
-    written,
+    timed_verdicts,
 )
 
-from checker import Engine, explore
+from checker import Engine, check, explore
+from checker.engines.zones.automaton_export import model_of
 from checker.engines.zones.explorer import why_global
 from checker.engines.zones.tchecker import tchecker_text
 from semantics.state.setting import Scheduler
 from specs.elaboration import load_mission
 
 pytestmark = pytest.mark.skipif("TCHECKER" not in os.environ, reason="TCHECKER names no program `tck-reach`")
-
-ALGORITHMS = ("reach", "concur19")
 
 
 def under_program_order(name):
@@ -56,11 +55,16 @@ def judged(model, folder, algorithm):
 
 def assert_same(c, asked, folder):
     """Look whether TChecker reaches as many tuples of local states as locations, and comes to the same verdicts."""
-    text = tchecker_text(written(c, None, divided=True))
-    for algorithm in ALGORITHMS:
-        reached = reached_by_tchecker(text, folder, algorithm)
-        assert len(reached) == len(explore(c, engine=Engine.FAST).times.reached)
-        agree(c, asked, lambda model: judged(model, folder, algorithm), divided=True)  # noqa: B023 - used at once
+    times = explore(c, engine=Engine.FAST).times
+    verdicts = timed_verdicts(check(c, asked).verdicts)
+    whole, *texts = (
+        tchecker_text(model_of(times, each, "a mission", divided=True))
+        for each in (None, *(verdict.property for verdict in verdicts))
+    )
+    for algorithm in ("reach", "concur19"):
+        assert len(reached_by_tchecker(whole, folder, algorithm)) == len(times.reached)
+        for text, verdict in zip(texts, verdicts, strict=True):
+            assert found_by_tchecker(text, folder, algorithm) is verdict.outcome
 
 
 @pytest.mark.parametrize(
