@@ -188,7 +188,7 @@ def _most(one, other):
 
 @soak
 def test_flights_without_end():
-    """Fly on from the last soak's end, for some minutes: ten a second make 100,000 in a few nights."""
+    """Fly on from the last soak's end, for some minutes."""
     first, until = int(CURSOR.read_text()) if CURSOR.exists() else 1_000, time.monotonic() + 60 * MINUTES
     CURSOR.parent.mkdir(exist_ok=True)
     for seed in count(first):
