@@ -75,7 +75,7 @@ constraints:  ## write constraints.txt anew: the newest of all that is needed, i
 storm: $(STAMP)  ## the model checker Storm, for `big check --storm` and its tests, where there is a wheel of it
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --only-binary stormpy --editable '.[storm]'
 
-fuzz: $(STAMP)  ## the long tests whole, 100,000 mutated missions, a million mutated packets and sentences (nightly: an hour or more)
+fuzz: $(STAMP)  ## the long tests whole, 100,000 mutated missions, a million mutated packets and sentences, flights for BIGACTORS_FLIGHTS_MINUTES=30 from where the last run ended (nightly: an hour or more)
 	BIGACTORS_FUZZ=100000 BIGACTORS_FUZZ_PACKETS=1000000 $(BIN)/python -m pytest -n 2 -q --timeout 0 -m "fuzz or hypothesis"
 
 mutants: $(STAMP)  ## change semantics/ and the reductions one operator at a time: which changes does no test notice? (nightly; MUTANTS=semantics.control* for a part)
