@@ -461,7 +461,7 @@ def test_zones_report_what_whole_ticks_report_of_a_mission_whose_ticks_are_made_
 def test_after_the_end_of_its_time_a_search_in_ticks_decides_nothing_more(flight):
     met = []
     found = explore(
-        flight, lambda *seen: met.append(seen), limits=Limits(seconds=1e-9), engine=Engine.REFERENCE
+        flight, [lambda *seen: met.append(seen)], limits=Limits(seconds=1e-9), engine=Engine.REFERENCE
     )
     time = "the time limit of 1e-09 s"
     assert list(map(str, found.bounds)) == [
