@@ -19,6 +19,10 @@ MOST_PENDING = 64
 """The most pending requests of one agent, or messages in one mailbox, in a configuration that is expanded."""
 
 
+EXPLORING = 0.5
+"""The share of the time limit for an exploration; inspecting the result takes as long again."""
+
+
 class Stop(Enum):
     """The reason why a search stopped or left something out, in words with a placeholder `{}` for each figure."""
 

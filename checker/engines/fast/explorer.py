@@ -20,7 +20,7 @@ from checker.engines.fast.row_graph import GraphSurvey
 from checker.engines.fast.row_inspection import inspect_fast
 from checker.engines.fast.row_search import RowSearch, choosing, exchanging
 from checker.engines.made_on_access import MadeOnAccess
-from checker.limits import Bound, BoundMet, CheckPart, Limits, Stop, bounded, is_full, memory_left
+from checker.limits import EXPLORING, Bound, BoundMet, CheckPart, Limits, Stop, bounded, is_full, memory_left
 from semantics.state.configuration import Configuration
 
 CHUNK = 1 << 15
@@ -31,9 +31,6 @@ OBJECTS_BETWEEN_COLLECTIONS = 200_000
 
 HOLDING = 0.0005
 """The thread switch interval in seconds while rules run; Python's 5 ms are as long as ten loops."""
-
-EXPLORING = 0.5
-"""The share of the time limit for exploration; inspecting the result takes as long again."""
 
 
 def explore_fast(initial: Configuration, inspect: tuple[Inspect, ...], options: Options) -> Exploration:

@@ -19,6 +19,7 @@ from checker.engines.timed.answers import (
 )
 from checker.engines.timed.digital_graph import Timeline
 from checker.engines.timed.first_runs import DELAY, TimedRun, dated, first_run
+from checker.limits import look
 from checker.properties.critical_path import way_to
 from checker.properties.longest_stays import first_ticks, last_ticks, longest, stopped
 from semantics.properties.propositions import Proposition, holds
@@ -260,6 +261,7 @@ class DigitalAnswers:
 
     def stop(self) -> TimelockRun | None:
         """Return the first run to a timelock, None if there is none."""
+        look()
         stops = stopped(self.edges, [not edges for edges in self.edges])
         run = first_run(0, self.edges.__getitem__, stops.__getitem__)
         if run is None:

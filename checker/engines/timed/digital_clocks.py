@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import time
 from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 from checker.engines.contract import Exploration, Inspect, Options, Progress, sample
 from checker.engines.reference import crowded
@@ -18,7 +18,7 @@ from checker.engines.timed.digital_graph import Timeline
 from checker.engines.timed.exchanged_clocks import ClockExchange
 from checker.engines.timed.first_runs import DELAY, layers
 from checker.engines.timed.original_times import OriginalTimes
-from checker.limits import Stop, is_full, look
+from checker.limits import EXPLORING, BoundMet, CheckPart, Stop, bounded, is_full, look
 from semantics.state.configuration import Configuration
 
 
@@ -35,10 +35,8 @@ def explore_in_ticks(initial: Configuration, inspect: Iterable[Inspect], options
             break
         timeline.begin()  # a constant is larger than assumed: clocks are counted further
     found.times = times = _summarise(timeline, found)
-    for place in range(len(timeline.order)):
-        for inspection in inspect:
-            for c, steps in shown_in_time(times, place, shown_to(inspection)):
-                inspection(place, c, steps)
+    with bounded(options.limits, started):
+        _show(times, found, tuple(inspect))
     if exchange is not None:
         found.times, found.reducer, found.start = OriginalTimes(times, exchange), options.reduce, initial
         _doubt(timeline, options)
@@ -46,12 +44,24 @@ def explore_in_ticks(initial: Configuration, inspect: Iterable[Inspect], options
     return found
 
 
+def _show(times: DigitalAnswers, found: Exploration, inspect: Sequence[Inspect]) -> None:
+    """Show each configuration to the inspections until a bound is met."""
+    try:
+        for place in range(len(times.timeline.order)):
+            for inspection in inspect:
+                look()
+                for c, steps in shown_in_time(times, place, shown_to(inspection)):
+                    inspection(place, c, steps)
+    except BoundMet as met:
+        found.bounds.append(met.bound.met_in(CheckPart.LOOKING))
+
+
 def _visit_all(timeline: Timeline, found: Exploration, options: Options, started: float) -> None:
-    limits, reported, count = options.limits, started, 0
+    limits, reported, count, crowds = options.limits, started, 0, dict[int, bool]()
     while timeline.waiting:
         index = timeline.waiting.popleft()
         now, count = time.monotonic(), count + 1
-        stop = limits.end(now - started)
+        stop = limits.end(now - started, EXPLORING)
         if stop is None and count % 1024 == 0 and is_full(limits):
             stop = limits.bound(Stop.MEMORY)
         if (
@@ -66,7 +76,10 @@ def _visit_all(timeline: Timeline, found: Exploration, options: Options, started
         if options.report is not None and now - reported >= options.every:
             options.report(_progress(timeline, count, now - started))
             reported = now
-        if crowded(timeline.situations[timeline.configuration(index)].c, limits.pending):
+        number = timeline.configuration(index)
+        if number not in crowds:
+            crowds[number] = crowded(timeline.situations[number].c, limits.pending)
+        if crowds[number]:
             bound = limits.bound(Stop.PENDING)
             found.bounds += [] if bound in found.bounds else [bound]
         else:

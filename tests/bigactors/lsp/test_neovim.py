@@ -1,39 +1,53 @@
-"""The server in a real editor: Neovim, by its own client."""
+"""The configuration of Neovim in docs/how-to/editors.md, followed to the letter: a mistake is shown."""
 
-import json
 import os
+import re
 import shutil
 import subprocess
 import sys
-from pathlib import Path
 
 import pytest
+from repository import ROOT
 
-ROOT = Path(__file__).parents[3]
-NEOVIM = shutil.which("nvim")
-SCRIPT = Path(__file__).with_name("neovim.lua")
-OIL_SPILL = (ROOT / "specs/missions/oil_spill.mission").read_text(encoding="utf-8")
+PAGE = ROOT / "docs" / "how-to" / "editors.md"
+MISSION = """\
+signature standard
+world {
+  bay0: Location = circle (37.01, -8.65) radius 900 m
+  uav0: UAV = point (37.01, -8.65)
+}
+BigActor a hosted_at uav0 with_behavior { control(MOVE_HOST_TO byy0) }
+"""
+SHOWS = """\
+vim.wait(100000, function() return #vim.diagnostic.get(0) > 0 end, 200)
+for _, each in ipairs(vim.diagnostic.get(0)) do print(each.lnum + 1, each.code, each.message) end
+vim.cmd("qa!")
+"""
 
 
-@pytest.mark.skipif(NEOVIM is None, reason="Neovim is not installed")
-def test_neovim_shows_mistakes_mends_renames_completes_and_lays_out(tmp_path):
-    mission, results = tmp_path / "oil_spill.mission", tmp_path / "results.json"
-    mission.write_text(OIL_SPILL.replace("TO searchArea0", "TO   serchArea0"), encoding="utf-8")
-    server = tmp_path / "bigactors"
-    server.write_text(f'#!/bin/sh\nexec "{sys.executable}" -m bigactors "$@"\n')
-    server.chmod(0o755)
-    line = [NEOVIM, "--clean", "--headless", "-n", "-S", str(SCRIPT)]
-    told = {"BIGACTORS_EDITED": "\n".join(map(str, (server, mission, results)))}
-    home = {"XDG_STATE_HOME": str(tmp_path), "XDG_CACHE_HOME": str(tmp_path)}
-    subprocess.run(
-        line, cwd=ROOT, env={**os.environ, **told, **home}, timeout=120, check=True, capture_output=True
+def test_neovim_shows_a_mistake_with_its_remedy(tmp_path):
+    neovim = shutil.which("nvim")
+    if neovim is None:
+        pytest.skip("there is no nvim")
+    version = subprocess.run([neovim, "--version"], capture_output=True, text=True, check=True).stdout
+    is_new = tuple(map(int, re.findall(r"v(\d+)\.(\d+)", version)[0])) >= (0, 11)
+    since, before = re.findall(r"```lua\n(.*?)```", PAGE.read_text("utf-8"), re.DOTALL)
+    for name, text in (
+        ("init.lua", since if is_new else before),
+        ("m.mission", MISSION),
+        ("shows.lua", SHOWS),
+    ):
+        (tmp_path / name).write_text(text, encoding="utf-8")
+    command = tmp_path / "bigactors"
+    command.write_text(f'#!/bin/sh\nexec "{sys.executable}" -m bigactors "$@"\n', encoding="utf-8")
+    command.chmod(0o700)
+    shown = subprocess.run(
+        [neovim, "--headless", "-u", "init.lua", "m.mission", "-c", "luafile shows.lua"],
+        cwd=tmp_path,
+        env=os.environ | {"PATH": f"{tmp_path}:{os.environ['PATH']}", "PYTHONPATH": str(ROOT)},
+        capture_output=True,
+        text=True,
+        timeout=150,
+        check=True,
     )
-    found = json.loads(results.read_text(encoding="utf-8"))
-    assert found.get("error") is None
-    assert found["mistakes"] == [[20, 26, "unknown name 'serchArea0'\nhint: did you mean 'searchArea0'?"]]
-    assert found["definition"] == 14
-    assert found["hover"].startswith("**entity** `oilSpill0`")
-    assert found["renamed"] == OIL_SPILL.count("oilSpill0") == 6
-    assert "searchArea0" in found["completion"]
-    assert found["text"] == OIL_SPILL.replace("oilSpill0", "slick")
-    assert found["lenses"] == 6
+    assert "6 LS201 unknown name 'byy0'\nhint: did you mean 'bay0'?" in shown.stderr + shown.stdout

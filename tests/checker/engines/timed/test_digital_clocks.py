@@ -470,3 +470,18 @@ def test_zones_report_what_whole_ticks_report_of_a_mission_whose_ticks_are_made_
     (tmp_path / "coarse.mission").write_text(coarse, encoding="utf-8")
     mission = load_mission(tmp_path / "coarse.mission")
     assert_alike(*(check(mission, engine=each) for each in (Engine.REFERENCE, Engine.FAST)))
+
+
+def test_after_the_end_of_its_time_a_search_in_ticks_decides_nothing_more(flight):
+    met = []
+    found = explore(
+        flight, [lambda *seen: met.append(seen)], limits=Limits(seconds=1e-9), engine=Engine.REFERENCE
+    )
+    time = "the time limit of 1e-09 s"
+    assert list(map(str, found.bounds)) == [
+        time,
+        f"{time}, in the examination of the explored configurations",
+    ]
+    assert met == []
+    report = check(flight, [when()], Limits(seconds=1e-9), engine=Engine.REFERENCE)
+    assert report.verdicts["time"].note == f"not decided: {time} was met"
