@@ -91,14 +91,11 @@ too.
 [Foxglove](https://foxglove.dev) and Lichtblick show its map and its log: add a Map panel and a Log panel. The topics
 that begin with `/` are for them alone, in Foxglove's schemas:
 
-- `/NAME/fix` (`foxglove.LocationFix`): where an entity was observed, at most once a second; `arrivals` has all.
-- `/PLUGIN/others/fix`: the same of all entities that the mission does not name; `frame_id` has the name.
-- `/places` (`foxglove.GeoJSON`): the mission's places that never move, and the vehicles' fences, once.
-- `/NAME/area`, `/PLUGIN/others/area` (`foxglove.GeoJSON`): any other place at each change; empty when it is gone.
-- `/log` (`foxglove.Log`): findings, commands, words of operators and vehicles, omissions.
-
-An unknown altitude is 0 there. The schemas in the file leave out members whose types these programs do not know; the
-tables below are complete.
+- `/NAME/fix` (`foxglove.LocationFix`): the observed positions of an entity, at most one a second;
+  `/PLUGIN/others/fix`: those of all entities that the mission does not name.
+- `/places` (`foxglove.GeoJSON`): the mission's places that never move, and the vehicles' fences; `/NAME/area`: any
+  other place at each change.
+- `/log` (`foxglove.Log`): findings, commands, words of operators and vehicles.
 
 A step is the step of a trace ([trace.schema.json](trace.schema.json)). `observed` has the cells of P that the world
 wrote, each as `[cell, value]`. A cell is a list of words such as `["placement", "uav0"]` or `["channels", "uav0"]`. A

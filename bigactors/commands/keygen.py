@@ -14,7 +14,6 @@ private key has no passphrase: keep it only on the machine that signs verdicts."
 EXAMPLES: Final = (
     "bigactors keygen release.key",
     "bigactors check --control timed --verdict m.verdict.json --sign release.key m.mission",
-    "bigactors run m.mission --trust release.key.pub --vehicle uav0=udp:127.0.0.1:14550",
 )
 
 ARGUMENTS: Final = """\

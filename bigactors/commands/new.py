@@ -16,7 +16,6 @@ one, and the trace that follows. An existing file stays as it is."""
 EXAMPLES: Final = (
     "bigactors new patrol",
     "bigactors new missions/patrol",
-    "bigactors check --watch patrol.mission",
 )
 
 ARGUMENTS: Final = """\

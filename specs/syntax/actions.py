@@ -16,9 +16,8 @@ from specs.syntax.nodes import Name, Node, node
 class Command(Node):
     """`MOVE u TO e`, `HAND u TO g`: a command; each operand is the name of a node, or a variable that holds one.
 
-    `VIA v, w` lists the places on its way in their order: twenty at the most, each named once. They are context: L has
-    to have them, P has to show them, and no other condition applies to them. On its way, the mover is in none of them:
-    it is in transit to its destination. In a live run, the vehicle gets the way as a mission on board.
+    `VIA v, w` lists the places on its way in their order: twenty at the most, each named once. L has to have them, and
+    P has to show them. On its way, the mover is in none of them: it is in transit to its destination.
     """
 
     name: str

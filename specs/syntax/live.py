@@ -13,8 +13,8 @@ from specs.syntax.statements import Duration
 class OnBroken(Node):
     """`on broken assumption: return`, `on broken property: hold`: hold, return or continue.
 
-    The reaction of vehicles to a change of the world that the environment section does not allow: by default they hold.
-    Or their reaction to an invariant about ways that is false of what is seen: by default they go on.
+    The reaction of vehicles to a change of the world that the environment section does not allow (by default they
+    hold), or to a broken invariant about ways (by default they go on).
     """
 
     what: str

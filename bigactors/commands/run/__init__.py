@@ -22,7 +22,6 @@ exit codes:
 EXAMPLES: Final = (
     f"bigactors run oil_spill.mission --vehicle uav0={ADDRESS} --feed ais=udp:10110 --record run.mcap",
     f"bigactors run handover.mission --station gcs0 --peers peers.toml --vehicle uav0={ADDRESS}",
-    f"bigactors run oil_spill.mission --vehicle uav0={ADDRESS} --resume run.mcap --record more.mcap",
 )
 
 ARGUMENTS: Final = f"""\
