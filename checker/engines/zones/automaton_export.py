@@ -10,7 +10,7 @@ from checker.engines.timed.zone_answers import ZoneTimes
 from checker.engines.zones.exported_process import ExportedProcess, ProcessWriter
 from checker.engines.zones.local_automata import Division, LocalAutomaton, Wrong
 from checker.engines.zones.local_states import LocalStates
-from checker.engines.zones.observers import Observer, ObserverClock
+from checker.engines.zones.observers import Observer
 from checker.engines.zones.timed_automaton import TimedAutomaton
 from semantics.properties.kinds import PropertyKind
 from semantics.properties.property import Property
