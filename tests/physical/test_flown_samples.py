@@ -2,8 +2,8 @@
 
 import os
 import time
-from contextlib import suppress
 from dataclasses import dataclass
+from functools import wraps
 from itertools import count
 from pathlib import Path
 
@@ -118,7 +118,21 @@ def outside(samples, region: Region):
     return np.min([away(samples, rings(area_of(part))) - part.margin for part in region.parts], axis=0).max()
 
 
+def unless_refused(test):
+    """Decorate a test: only the largest world has regions that are too far from each other, which are refused."""
+
+    @wraps(test)
+    def refused(seed):
+        try:
+            test(seed)
+        except RegionError:
+            assert list(WORLDS)[seed % len(WORLDS)] == "continent"
+
+    return refused
+
+
 @seeds(1_000, 18)
+@unless_refused
 def test_every_sample_of_a_flight_is_in_the_region(seed):
     rng = np.random.default_rng(seed)
     world = list(WORLDS)[seed % len(WORLDS)]
@@ -127,6 +141,7 @@ def test_every_sample_of_a_flight_is_in_the_region(seed):
 
 
 @seeds(1_000, 18)
+@unless_refused
 def test_what_relations_promise_of_a_place_holds_for_every_sample(seed):
     rng = np.random.default_rng(seed)
     world = list(WORLDS)[seed % len(WORLDS)]
@@ -150,6 +165,7 @@ def test_what_relations_promise_of_a_place_holds_for_every_sample(seed):
 
 
 @seeds(1_000, 18)
+@unless_refused
 def test_the_nearest_points_of_two_flights_are_no_farther_than_any_samples(seed):
     rng = np.random.default_rng(seed)
     world = list(WORLDS)[seed % len(WORLDS)]
@@ -195,10 +211,9 @@ def test_flights_without_end():
         CURSOR.write_text(str(seed))  # a failure is met again
         if time.monotonic() > until:
             break
-        with suppress(RegionError):  # too large, and refused
-            test_every_sample_of_a_flight_is_in_the_region(seed)
-            test_what_relations_promise_of_a_place_holds_for_every_sample(seed)
-            test_the_nearest_points_of_two_flights_are_no_farther_than_any_samples(seed)
+        test_every_sample_of_a_flight_is_in_the_region(seed)
+        test_what_relations_promise_of_a_place_holds_for_every_sample(seed)
+        test_the_nearest_points_of_two_flights_are_no_farther_than_any_samples(seed)
 
 
 def test_the_oracle_flies_away_from_a_wrong_region():
