@@ -390,9 +390,11 @@ def chained_comparison(at: ParsePoint) -> Diagnostic | None:
 
 
 def missing_unit(at: ParsePoint) -> Diagnostic | None:
-    """`radius 400`, or `after 10`."""
-    for units, hint in _UNITS:
+    """`radius 400`, `after 10`, or `at 10 to 12 m/s`."""
+    for units, example in _UNITS:
         if set(units) <= at.accepted:
+            both = f"write the unit behind both numbers: {at.before.text} {units[0]} to ..."
+            hint = both if at.found.text == "to" else example
             listed = f"{', '.join(map(repr, units[:-1]))} or '{units[-1]}'"
             message = f"expected {listed} behind {at.before.shown}"
             return Diagnostic(Code.MISSING_UNIT, at.before.span, message, hint)
