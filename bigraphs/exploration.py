@@ -12,7 +12,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 from bigraphs.engine.machine import Machine
-from bigraphs.errors import counted
 from bigraphs.resources import memory_taken
 from bigraphs.state_store import StateStore
 from bigraphs.system import System
@@ -179,7 +178,7 @@ class _Search:
             if self.is_due:
                 self.tidy()
             if not self.go_on():
-                raise SearchEnd(f"the limit of {counted(self.limits.states, 'state')} was reached")
+                raise SearchEnd(f"the limit of {self.limits.states:,} states was reached")
             self.look()
 
     def go_on(self) -> bool:
