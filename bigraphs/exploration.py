@@ -12,7 +12,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 from bigraphs.engine.machine import Machine
-from bigraphs.errors import counted
 from bigraphs.resources import memory_taken
 from bigraphs.state_store import StateStore
 from bigraphs.system import System

@@ -102,7 +102,9 @@ class Trace:
     @property
     def told_race(self) -> tuple[str, ...]:
         """The three steps of the race that this is a trace of, line by line."""
-        return () if self.race is None else tuple(self.race.told([step.label for step in self.steps]))
+        if self.race is None:
+            return ()
+        return tuple(self.race.told([step.label for step in self.steps], self.configurations))
 
 
 def trace_to(found: Exploration, number: int, by: Transition | None = None) -> Trace:

@@ -386,11 +386,13 @@ def chained_comparison(at: ParsePoint) -> Diagnostic | None:
 
 
 def missing_unit(at: ParsePoint) -> Diagnostic | None:
-    """`radius 400`, or `after 10`."""
+    """`radius 400`, `after 10`, or `at 10 to 12 m/s`."""
     for units in _UNITS:
         if set(units) <= at.accepted:
+            both = f"write the unit behind both numbers: {at.before.text} {units[0]} to ..."
+            each = f"write {_either(f'{at.before.text} {unit}' for unit in units)}"
+            hint = both if at.found.text == "to" else each
             message = f"expected {_either(map(repr, units))} behind {at.before.shown}"
-            hint = f"write {_either(f'{at.before.text} {unit}' for unit in units)}"
             return Diagnostic(Code.MISSING_UNIT, at.before.span, message, hint)
     return None
 

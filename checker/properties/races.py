@@ -149,7 +149,7 @@ def _resting_on(c: Configuration, stale: Dependency, by: Transition) -> Inspecte
 
 
 _QUESTIONS: Final[Mapping[str, str]] = {
-    "all": "all that {seen} shows",
+    "all": "the whole of {seen}, of which no test takes a part",
     "members": "which names {seen} shows",
     "size": "how many names {seen} shows",
     "in": "whether {seen} shows {name}",

@@ -187,9 +187,9 @@ def test_a_stale_observation_is_told_with_the_query_and_the_test_and_a_shortest_
         "uav0, and another agent has changed that answer since then"
     )
     assert race.details == (
-        "sensed in step 7: ⟨sense : OBS(b, CHILDREN(gate0))⟩",
-        "changed by a in step 8: ⟨actuate : CTR(a, MOVE_HOST_TO gate0)⟩",
-        "acted on in step 12: ⟨actuate : CTR(b, MOVE_HOST_TO gate0)⟩",
+        "sensed in step 7: ⟨sense : OBS(b, CHILDREN(gate0))⟩, asked in line 31",
+        "changed by a in step 8: ⟨actuate : CTR(a, MOVE_HOST_TO gate0)⟩, asked in line 27",
+        "acted on in step 12: ⟨actuate : CTR(b, MOVE_HOST_TO gate0)⟩, asked in line 32",
     )
     assert len(race.trace) == 12  # each looks and asks in 5 steps, and both are served
     pilot = violation(verdict(MOVED_BY_A_PILOT, "race_freedom"), STALE)
