@@ -178,8 +178,7 @@ class _Search:
             if self.is_due:
                 self.tidy()
             if not self.go_on():
-                assert self.limits.states is not None
-                raise SearchEnd(f"the limit of {counted(self.limits.states, 'state')} was reached")
+                raise SearchEnd(f"the limit of {self.limits.states:,} states was reached")
             self.look()
 
     def go_on(self) -> bool:
