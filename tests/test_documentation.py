@@ -45,7 +45,7 @@ LONG = {
 }
 """Pages that fly, or show many commands one after the other."""
 
-NOT_RUN = 44
+NOT_RUN = 45
 """How many blocks are only shown; each says why."""
 
 FENCE = re.compile(r"^((?:<!-- [^\n]+ -->\n)*)```(\w*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)

@@ -25,7 +25,8 @@ from checker.engines.timed.first_runs import TimedRun
 from checker.engines.zones.difference_bounds import MOST, NONE
 from checker.engines.zones.earliest_dates import Dates, Zone, tested, whole
 from checker.engines.zones.first_run import run_of
-from checker.engines.zones.observers import CUT_OFF, Meter, Observer, ObserverClock, Rule
+from checker.engines.zones.observer_walk import ObserverClock, Rule
+from checker.engines.zones.observers import CUT_OFF, Meter, Observer
 from checker.engines.zones.questions import NO_TURN, first_turn, is_aloft, longest_flight, unbounded
 from checker.engines.zones.timed_automaton import (
     EDGE,

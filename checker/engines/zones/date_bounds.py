@@ -17,7 +17,8 @@ from checker.engines.timed.answers import NO_SPAN, DateSpan, TakenStep
 from checker.engines.zones.difference_bounds import FREE, MOST
 from checker.engines.zones.earliest_dates import Dates, Zone, tested, whole
 from checker.engines.zones.first_run import run_of
-from checker.engines.zones.observers import Meter, Observer, ObserverClock
+from checker.engines.zones.observer_walk import ObserverClock
+from checker.engines.zones.observers import Meter, Observer
 from checker.engines.zones.timed_automaton import Constraint, Edge
 from checker.engines.zones.timed_automaton_of import Network
 from checker.engines.zones.zone_search import Search

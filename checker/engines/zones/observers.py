@@ -1,20 +1,16 @@
 """A mission's automaton with one additional clock, which measures how long a proposition is awaited."""
 
-# mypy: disable-error-code="return-value, assignment, arg-type"
-# (numba infers the types of compiled functions; mypy takes its integers for Python's)
-
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from enum import IntEnum
 from typing import Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from checker.engines.fast.arrays import Growing
-from checker.engines.fast.jit_decorators import njit
 from checker.engines.zones.difference_bounds import NONE
+from checker.engines.zones.observer_walk import ObserverClock, Rule, walk
 from checker.engines.zones.participants import WatchedParticipants
 from checker.engines.zones.timed_automaton import (
     CLOCKS,
@@ -43,23 +39,8 @@ from checker.engines.zones.timed_automaton_of import NOWHERE, Network
 Ints = NDArray[np.int32]
 
 
-class ObserverClock(IntEnum):
-    """The state of the additional clock in a location."""
-
-    OFF = 0
-    ON = 1
-    END = 2
-    """The clock is read, and the location has no edges."""
-    START = 3
-
-
-_END, _START = int(ObserverClock.END), int(ObserverClock.START)
-
 CUT_OFF: Final = -1
 """The state that a rule gives to a location that is left out."""
-
-Rule = NDArray[np.int8]
-"""The state of the clock in each location: where it was off before, and where it was on."""
 
 
 class ObservedLocation(NamedTuple):
@@ -118,7 +99,7 @@ class Observer:
         self.meter_clock = self.automaton.clock(self.meter.lower, self.meter.upper)
         if self.reads is not None and self.network.participants is not None:
             self.participants = WatchedParticipants(self.network.participants, self.automaton, self.reads)
-        spots, edges = _followed(base.locations.used, base.edges.used, self.rule, self.network.first)
+        spots, edges = walk(base.locations.used, base.edges.used, self.rule, self.network.first)
         self.locations, self.watches = spots.T
         self._add_locations(np.bincount(edges[:, 1], minlength=len(spots)))
         self._add_edges(*edges.T)
@@ -198,42 +179,6 @@ class Observer:
         records[:, TARGET] = targets
         records[:, LEARNED] = records[:, FIRST] = NONE
         _put(found.edges, records)
-
-
-@njit(cache=True, _nrt=True)
-def _followed(locations: Ints, edges: Ints, rule: Rule, first: int) -> tuple[Ints, Ints]:
-    """Return the observer's locations and edges, breadth-first.
-
-    Of each location: that of the mission, and the state of the clock. Of each edge: that of the mission, its source,
-    its target, and whether the clock starts.
-    """
-    numbers = np.full((3, len(locations) // LOCATION), -1, np.int32)
-    spots = np.empty((numbers.size, 2), np.int32)
-    found = np.empty((2 * (len(edges) // EDGE), 4), np.int32)
-    count, ways, at = 1, 0, 0
-    watch = rule[0, first]
-    spots[0, 0], spots[0, 1] = first, 1 if watch == _START else watch
-    numbers[spots[0, 1], first] = 0
-    while at < count:
-        location, before = spots[at, 0], spots[at, 1]
-        begin, end = locations[LOCATION * location + EDGES], locations[LOCATION * location + EDGES_END]
-        if before == _END:
-            end = begin
-        for edge in range(begin, end):
-            target = edges[EDGE * edge + TARGET]
-            watch = rule[before, target]
-            if watch < 0:
-                continue
-            after = 1 if watch == _START else watch
-            if numbers[after, target] < 0:
-                numbers[after, target] = count
-                spots[count, 0], spots[count, 1] = target, after
-                count += 1
-            found[ways, 0], found[ways, 1], found[ways, 2] = edge, at, numbers[after, target]
-            found[ways, 3] = watch == _START
-            ways += 1
-        at += 1
-    return spots[:count].copy(), found[:ways].copy()
 
 
 def _extend(

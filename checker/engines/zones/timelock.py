@@ -25,7 +25,8 @@ from checker.engines.zones.earliest_dates import (
     without,
 )
 from checker.engines.zones.first_run import first_run
-from checker.engines.zones.observers import Meter, Observer, ObserverClock
+from checker.engines.zones.observer_walk import ObserverClock
+from checker.engines.zones.observers import Meter, Observer
 from checker.engines.zones.timed_automaton import (
     DEADLINES,
     DEADLINES_END,

@@ -67,7 +67,7 @@ MISTAKES = [
         "big b = share Z{x} by ([{0, 1}], 2) in (A.id | A.id);",
         "this does not pass on the name 'x' of the shared bigraph",
     ),
-    ("interface", "big b = share s by ([{0, 1}], 2) in A;", "this has 1 sites, and the placing is over 2"),
+    ("interface", "big b = share s by ([{0, 1}], 2) in A;", "this has 1 site, and the placing is over 2"),
     (
         "interface",
         "big b = share s by ([{0}], 1) in (A || id{q});",
