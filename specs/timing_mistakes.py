@@ -35,6 +35,45 @@ _BEFORE_DURATIONS: Final = frozenset(
 )
 
 
+_UNIT_WORDS: Final[Mapping[str, str]] = {
+    **dict.fromkeys(("minutes", "minute", "mins"), "min"),
+    **dict.fromkeys(("seconds", "second", "sec", "secs"), "s"),
+    **dict.fromkeys(("hours", "hour", "hr", "hrs"), "h"),
+    **dict.fromkeys(("milliseconds", "millis"), "ms"),
+    **dict.fromkeys(("mps",), "m/s"),
+    **dict.fromkeys(("kmh", "kph"), "km/h"),
+    **dict.fromkeys(("knots", "knot", "kt", "kts"), "kn"),
+}
+"""The unit of times and speeds for a word of other texts."""
+
+
+def foreign_unit(at: ParsePoint) -> Diagnostic | None:
+    """`within 15 minutes`, `flies at 10 mps`."""
+    unit = _UNIT_WORDS.get(at.found.text)
+    if unit not in at.accepted or not at.before.is_number:
+        return None
+    message = f"{at.found.shown} is no unit of the language"
+    return at.mistake(Code.MISSING_UNIT, message, f"write {at.before.text} {unit}")
+
+
+def argued_endurance(at: ParsePoint) -> Diagnostic | None:
+    """`check { endurance 25 min }`."""
+    if at.before.text != "endurance" or "invariant" not in at.accepted or at.is_first:
+        return None
+    hint = "its times stand in timing { uav0 lasts 45 min, restored in base0 after 20 min }"
+    return at.mistake(Code.UNEXPECTED, "'endurance' stands alone", hint)
+
+
+def exact_time(at: ParsePoint) -> Diagnostic | None:
+    """`tanker0 vanishes at 1 h`."""
+    if at.found.text != "at" or not {"after", "within"} <= at.accepted or not at.following.is_number:
+        return None
+    time = _duration_at(at, at.following)
+    return at.mistake(
+        Code.UNEXPECTED, "expected 'after' or 'within', found 'at'", f"write after {time}, within {time}"
+    )
+
+
 def foreign_bound(at: ParsePoint) -> Diagnostic | None:
     """`observe takes 2 s`, `uav0 moves at 8 m/s`, `pilot reacts within 1 s`, `agents take at most 1 s`."""
     hint = ""
@@ -152,7 +191,10 @@ def _duration_at(at: ParsePoint, number: Word) -> str:
 
 
 TIMING_MISTAKES: Final[tuple[Callable[[ParsePoint], Diagnostic | None], ...]] = (
+    foreign_unit,
     foreign_bound,
+    argued_endurance,
+    exact_time,
     bad_duration,
     unnamed_property,
     timeout_as_case,

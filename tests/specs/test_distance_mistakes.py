@@ -33,6 +33,11 @@ boat0 not in bay0  # not | write not boat0 in bay0
 actually boat0 not in bay0  # not | write not actually boat0 in bay0
 possibly boat0 not in bay0
     # not | write not possibly boat0 in bay0: it never is; or not surely boat0 in bay0: it may be elsewhere
+boat0 not within 5 km of bay0  # not | write not boat0 within ...
+never actually boat0 in bay0
+    # never | write not actually boat0 ...: an invariant is true at all times; in ltl, always not actually boat0 ...
+not never boat0 in bay0
+    # not never | write boat0 in ..., without both: in reachable, it is true at some time
 within 5 min boat0 in bay1  # within | a deadline is a property: within 5 min "name": formula
 """
 
