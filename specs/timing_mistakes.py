@@ -17,7 +17,7 @@ _CHANGING: Final = "the duration of a change stands in timing { ... }: wifi drop
 
 BEGINNING: Final[Mapping[str, str]] = {
     **dict.fromkeys(("observe", "sensing", "observation", "observations"), "write sense within 5 s"),
-    "react": _REACTING,
+    **dict.fromkeys(("react", "reaction", "reactions"), _REACTING),
     **dict.fromkeys(("send", "message"), "write messages over wifi within 5 s, or messages on one host"),
     "control": "write the duration of a command by its first word, HAND within 10 s, and the speed of flights",
 }
@@ -81,6 +81,13 @@ def foreign_bound(at: ParsePoint) -> Diagnostic | None:
         hint = BEGINNING.get(at.found.text, "")
     elif "flies" in at.accepted:
         hint = TAKING.get(at.found.text, "")
+        if at.before.text in BEGINNING and at.found.is_name:
+            return Diagnostic(
+                Code.MISSPELT_KEYWORD,
+                at.before.span,
+                f"{at.before.shown} begins no line of timing",
+                BEGINNING[at.before.text],
+            )
     if hint:
         return at.mistake(Code.MISSPELT_KEYWORD, f"{at.found.shown} is not a word of the language here", hint)
     return _upper_bound_alone(at) or _restored(at)
@@ -99,6 +106,9 @@ def _upper_bound_alone(at: ParsePoint) -> Diagnostic | None:
 
 def _restored(at: ParsePoint) -> Diagnostic | None:
     """`lasts 25 min restored in yard`, `restored in yard within 10 min`."""
+    if at.before.text == "in" and at.found.is_number and _back(at, 2).text == "restored":
+        hint = f"write restored in base0 after {_duration_at(at, at.found)}"
+        return at.mistake(Code.UNEXPECTED, f"expected a place, found {at.found.shown}", hint)
     if "flies" not in at.accepted:
         return None
     if at.found.text in ("in", "at") and at.before.text == "restored":

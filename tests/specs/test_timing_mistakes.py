@@ -59,6 +59,10 @@ lasts 25 min ~> lasts 25 minutes  # minutes | write 25 min
 at 8 m/s ~> at 8 mps  # mps | write 8 m/s
 endurance\n ~> endurance 25 min\n
     # 25 | its times stand in timing { uav0 lasts 45 min, restored in base0 after 20 min }
+in yard after 10 min ~> in 10 min  # 10 | write restored in base0 after 10 min
+agents react ~> reaction  # reaction | bigActors have one bound together: agents react within 1 s
+messages over radio takes ~> message delay  # message | write messages over wifi within 5 s, or messages on one host
+control timed ~> control timing  # timing | write control timed
 agents react within 1 s ~> pump vanishes at 1 h  # at | write after 1 h, within 1 h
 lasts 25 ~> lasts for 25  # for | write lasts 5 min
 lasts 25 min ~> lasts 1 h 25 min  # 25 | write 85 min
