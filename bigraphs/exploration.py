@@ -178,7 +178,8 @@ class _Search:
             if self.is_due:
                 self.tidy()
             if not self.go_on():
-                raise SearchEnd(f"the limit of {self.limits.states:,} states was reached")
+                states = "state" if self.limits.states == 1 else "states"
+                raise SearchEnd(f"the limit of {self.limits.states:,} {states} was reached")
             self.look()
 
     def go_on(self) -> bool:

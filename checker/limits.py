@@ -24,9 +24,9 @@ EXPLORING = 0.5
 
 
 class Stop(Enum):
-    """The reason why a search stopped or left something out, in words with a placeholder `{}` for each figure."""
+    """The reason why a search stopped or left something out, in words with placeholders `{}`: figures, a plural."""
 
-    CONFIGURATIONS = "the limit of {:,} configurations"
+    CONFIGURATIONS = "the limit of {:,} configuration{}"
     TIME = "the time limit of {:g} s"
     MEMORY = "the memory limit of {:,.0f} MB"
     PENDING = "more than {} requests or messages of one agent pending"
@@ -59,7 +59,10 @@ class Bound:
     within: tuple[CheckPart, ...] = ()
 
     def __str__(self) -> str:
-        return ", in ".join((self.stop.value.format(*self.figures), *(part.value for part in self.within)))
+        plural = "" if self.figures == (1,) else "s"
+        return ", in ".join(
+            (self.stop.value.format(*self.figures, plural), *(part.value for part in self.within))
+        )
 
     def met_in(self, part: CheckPart) -> "Bound":
         """Return the bound as met in a part of the check."""

@@ -51,13 +51,15 @@ _COMPARISONS: Final = frozenset({"==", "!=", "<", "<=", ">", ">=", "in", "not"})
 _UNITS: Final = (("m", "km"), tuple(reversed(UNITS)), tuple(METRES_PER_SECOND))
 _HEADER: Final = re.compile(r"^\s*mission\b", re.MULTILINE)
 _DROP: Final = re.compile(r"(\w+(?:[:.\-]\w+)*)\s+(drop\w*|loses?|lost|fails?)(?!\w)")
+_CHANNELS: Final = re.compile(r"\blinked\s+\w[\w:.\-]*(?:\s*,\s*\w[\w:.\-]*)*\s+\Z")
+"""The channels of an entity, up to a word without a comma before it."""
 _LINKS: Final = frozenset({"drops"})
 _CALLED: Final = frozenset({"observe", "control", "migrate", "display", "spawn", *QueryOperator})
 _THROUGH: Final = re.compile(r"\b((?:for|choose)\s+\w+)\s+in\s+([^{}\[\]]*)")
 _SHORT: Final = 5
 """The length up to which a word resembles others by chance."""
 
-_IN_FORMULAS: Final = frozenset({"always", "eventually"})
+_ONLY_FIRST: Final = frozenset({"always", "eventually", "race", "races", "deadlock", "deadlocks"})
 _QUANTIFIERS: Final = frozenset({"forall", "exists"})
 _NAMES_AFTER: Final = re.compile(r"\b(\w+)\s+((?:\w+\s*,\s*)*\w+)\s*\Z")
 _MOST_NAMES: Final = 200
@@ -142,7 +144,7 @@ def unclosed_section(at: ParsePoint) -> Diagnostic | None:
 def begins_property(word: str, *, first: bool) -> bool:
     """Return whether a word is a property's kind, or meant as one; the `first` word of a line may begin a formula."""
     meant = word in PROPERTY_WORDS or bool(len(word) > _SHORT and nearest(word, PROPERTY_WORDS))
-    return meant or (word in ASKED and (first or word not in _IN_FORMULAS))
+    return meant or (word in ASKED and (first or word not in _ONLY_FIRST))
 
 
 def misspelt_word(at: ParsePoint) -> Diagnostic | None:
@@ -419,6 +421,10 @@ def reserved_word(at: ParsePoint) -> Diagnostic | None:
     meant = _STEPS.get(at.found.text) if "environment" in at.accepted else None
     if at.found.text == "to" and at.before.text == "linked":
         meant = f"write linked {at.following.text}"
+    if at.found.text == "if" and "forall" in at.accepted:
+        meant = "an implication is written F -> G"
+    if at.found.text == "timing" and at.before.text == "control":
+        meant = "write control timed"
     if meant:
         return at.mistake(
             Code.MISSPELT_KEYWORD, f"{at.found.shown} is not a word of the language here", meant
@@ -444,6 +450,16 @@ def missing_host(at: ParsePoint) -> Diagnostic | None:
         message = f"expected 'hosted_at' and a host, found {at.found.shown}"
         return at.mistake(Code.MISSING_HOST, message, FAMILY)
     return None
+
+
+def unseparated_channel(at: ParsePoint) -> Diagnostic | None:
+    """`linked control:gcs0 wifi`: read as the name of the next entity."""
+    start = at.before.span.start
+    line = at.prepared.text[at.prepared.text.rfind("\n", 0, start) + 1 : start]
+    if at.accepted != {":"} or not _CHANNELS.search(line):
+        return None
+    message = f"expected ',' before {at.before.shown}"
+    return Diagnostic(Code.MISSING_COMMA, at.before.span, message, "separate channels by commas")
 
 
 def missing_comma(at: ParsePoint) -> Diagnostic | None:
@@ -711,6 +727,7 @@ MISTAKES: Final[tuple[Callable[[ParsePoint], Diagnostic | None], ...]] = (
     *DISTANCE_MISTAKES,
     *TIMING_MISTAKES,
     flown,
+    unseparated_channel,
     hyphenated,
     bad_number,
     foreign_word,

@@ -7,7 +7,7 @@ from typing import Final
 
 from specs.codes import Code
 from specs.diagnostics import Diagnostic
-from specs.parse_error import ParsePoint, word_at, word_before
+from specs.parse_error import ParsePoint, Word, word_at, word_before
 
 _NEARER: Final = frozenset({"less", "nearer", "closer", "below", "under"})
 _FARTHER: Final = frozenset({"more", "farther", "further", "over", "above", "beyond"})
@@ -109,6 +109,28 @@ def other_modal(at: ParsePoint) -> Diagnostic | None:
     return Diagnostic(Code.MISSPELT_KEYWORD, at.before.span, message, f"write {meant} {at.found.text} in ...")
 
 
+def never(at: ParsePoint) -> Diagnostic | None:
+    """`never uav0 in west0`, `not never actually uav0 in west0`."""
+    if at.before.text != "never" or not {"directly", "linked"} <= at.accepted:
+        return None
+    claim = f"{at.found.text} {at.following.text}"
+    denied = word_before(at.prepared.text, at.before.span.start)
+    message, span = "'never' is not a word of the language here", at.before.span
+    if denied.text == "not":
+        message, span = "'not never' is not written here", denied.span.to(span)
+        hint = f"write {claim} ..., without both: in reachable, it is true at some time"
+    else:
+        hint = f"write not {claim} ...: an invariant is true at all times; in ltl, always not {claim} ..."
+    return Diagnostic(Code.MISSPELT_KEYWORD, span, message, hint)
+
+
+def begins_distance(text: str, word: Word) -> bool:
+    """Return whether a word is the `within` of a distance, and not of a deadline: `within 5 km`."""
+    number = word_at(text, word.span.end)
+    unit = word_at(text, number.span.end).text
+    return word.text == "within" and number.is_number and unit in ("m", "km", *_METRES)
+
+
 def late_deadline(at: ParsePoint) -> Diagnostic | None:
     """`invariant "r": within 5 min uav0 in east0`: read as the claim of an entity `within`."""
     if at.before.text != "within" or not at.found.is_number or not {"directly", "linked"} <= at.accepted:
@@ -135,5 +157,6 @@ DISTANCE_MISTAKES: Final[tuple[Callable[[ParsePoint], Diagnostic | None], ...]] 
     negated_place,
     negated_distance,
     other_modal,
+    never,
     late_deadline,
 )

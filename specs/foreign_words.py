@@ -77,6 +77,7 @@ ASKED: Final[Mapping[str, str]] = {
     **dict.fromkeys(("before", "after", "deadline", "by", "until"), 'write within 5 min "name": formula'),
     **dict.fromkeys(("earliest", "latest", "when", "duration"), 'write time "name": formula'),
     **dict.fromkeys(("battery", "energy", "fuel", "range"), "write endurance"),
+    "no": "write race_freedom or deadlock_freedom",
 }
 OF_A_KIND: Final = dict.fromkeys(
     ("moves", "moving", "mobile", "movable", "drives", "flies"),
@@ -84,7 +85,7 @@ OF_A_KIND: Final = dict.fromkeys(
 )
 
 CLAIMED: Final[Mapping[str, str]] = {
-    **dict.fromkeys(("at", "inside", "within", "on", "contained", "is"), "write in: uav0 in place0"),
+    **dict.fromkeys(("at", "inside", "within", "on", "over", "contained", "is"), "write in: uav0 in place0"),
     **dict.fromkeys(("connected", "joined"), "write linked: uav0 linked wifi"),
 }
 """Words by which other languages claim an entity's place or link."""
@@ -110,10 +111,12 @@ HAPPENING: Final[Mapping[str, str]] = {
         ("moves", "wanders", "flows", "floats"), "write drifts within place0, or drifts among place0, place1"
     ),
     **dict.fromkeys(("disappears", "dies", "sinks", "crashes"), "write vanishes"),
+    **dict.fromkeys(("lands", "returns"), "write arrives: its flights end"),
     **dict.fromkeys(("enters", "comes", "spawns", "shows"), "write appears at place0"),
 }
 """Verbs of entities in other languages."""
 
+BELIEVED: Final = dict.fromkeys(("not", "unseen", "unlocated", "hidden"), "write unknown: boat0 unknown")
 WHEREABOUTS: Final = dict.fromkeys(
     ("in", "at", "on", "inside", "within"),
     "write = point (37.08, -8.55): its position decides its place; or carried by an entity",
@@ -179,6 +182,7 @@ _CONTEXTS: Final[tuple[tuple[Callable[[ParsePoint], bool], Mapping[str, str]], .
     (lambda at: "invariant" in at.accepted, ASKED),
     (lambda at: "polygon" in at.accepted, GEOMETRIES),
     (lambda at: {"absent", "="} <= at.accepted, WHEREABOUTS),
+    (lambda at: {"unknown", "unlinked"} <= at.accepted, BELIEVED),
     (lambda at: {"directly", "linked"} <= at.accepted, CLAIMED),
     (lambda at: "<->" in at.accepted, JOINED),
     (lambda at: "vanishes" in at.accepted, HAPPENING),

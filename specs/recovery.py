@@ -199,9 +199,11 @@ class _Reading:
         The kind of a property, also a misspelt one, only stands at the property's beginning.
         """
         from specs.common_mistakes import begins_property  # noqa: PLC0415 - most texts have no mistake
+        from specs.distance_mistakes import begins_distance  # noqa: PLC0415 - most texts have no mistake
 
         line = self.text[self.text.rfind("\n", 0, word.span.start) + 1 : word.span.start]
-        if self.stacks.accepts("invariant") and begins_property(word.text, first=not line.strip()):
+        kind = begins_property(word.text, first=not line.strip()) and not begins_distance(self.text, word)
+        if self.stacks.accepts("invariant") and kind:
             return True
         return (word.text in ";}" or line.rstrip()[-1:] in ("", ";")) and self.stacks.accepts(word.text)
 

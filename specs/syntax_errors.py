@@ -74,7 +74,7 @@ _FORMS: Final = (
     (frozenset({"case", "after"}), "write case pattern => statements, or after 10 min => statements"),
     (
         frozenset({"flies"}),
-        "a bound is written UAV flies at 18 m/s to 25 m/s, uav0 lasts 45 min, HAND within 10 s",
+        "a bound is written UAV flies at 18 m/s to 25 m/s, uav0 lasts 45 min, restored in base0, or HAND within 10 s",
     ),
     (
         frozenset({"tick"}),

@@ -17,7 +17,7 @@ _CHANGING: Final = "the duration of a change stands in timing { ... }: wifi drop
 
 BEGINNING: Final[Mapping[str, str]] = {
     **dict.fromkeys(("observe", "sensing", "observation", "observations"), "write sense within 5 s"),
-    "react": _REACTING,
+    **dict.fromkeys(("react", "reaction", "reactions"), _REACTING),
     **dict.fromkeys(("send", "message"), "write messages over wifi within 5 s, or messages on one host"),
     "control": "write the duration of a command by its first word, HAND within 10 s, and the speed of flights",
 }
@@ -35,6 +35,45 @@ _BEFORE_DURATIONS: Final = frozenset(
 )
 
 
+_UNIT_WORDS: Final[Mapping[str, str]] = {
+    **dict.fromkeys(("minutes", "minute", "mins"), "min"),
+    **dict.fromkeys(("seconds", "second", "sec", "secs"), "s"),
+    **dict.fromkeys(("hours", "hour", "hr", "hrs"), "h"),
+    **dict.fromkeys(("milliseconds", "millis"), "ms"),
+    **dict.fromkeys(("mps",), "m/s"),
+    **dict.fromkeys(("kmh", "kph"), "km/h"),
+    **dict.fromkeys(("knots", "knot", "kt", "kts"), "kn"),
+}
+"""The unit of times and speeds for a word of other texts."""
+
+
+def foreign_unit(at: ParsePoint) -> Diagnostic | None:
+    """`within 15 minutes`, `flies at 10 mps`."""
+    unit = _UNIT_WORDS.get(at.found.text)
+    if unit not in at.accepted or not at.before.is_number:
+        return None
+    message = f"{at.found.shown} is no unit of the language"
+    return at.mistake(Code.MISSING_UNIT, message, f"write {at.before.text} {unit}")
+
+
+def argued_endurance(at: ParsePoint) -> Diagnostic | None:
+    """`check { endurance 25 min }`."""
+    if at.before.text != "endurance" or "invariant" not in at.accepted or at.is_first:
+        return None
+    hint = "its times stand in timing { uav0 lasts 45 min, restored in base0 after 20 min }"
+    return at.mistake(Code.UNEXPECTED, "'endurance' stands alone", hint)
+
+
+def exact_time(at: ParsePoint) -> Diagnostic | None:
+    """`tanker0 vanishes at 1 h`."""
+    if at.found.text != "at" or not {"after", "within"} <= at.accepted or not at.following.is_number:
+        return None
+    time = _duration_at(at, at.following)
+    return at.mistake(
+        Code.UNEXPECTED, "expected 'after' or 'within', found 'at'", f"write after {time}, within {time}"
+    )
+
+
 def foreign_bound(at: ParsePoint) -> Diagnostic | None:
     """`observe takes 2 s`, `uav0 moves at 8 m/s`, `pilot reacts within 1 s`, `agents take at most 1 s`."""
     hint = ""
@@ -42,6 +81,13 @@ def foreign_bound(at: ParsePoint) -> Diagnostic | None:
         hint = BEGINNING.get(at.found.text, "")
     elif "flies" in at.accepted:
         hint = TAKING.get(at.found.text, "")
+        if at.before.text in BEGINNING and at.found.is_name:
+            return Diagnostic(
+                Code.MISSPELT_KEYWORD,
+                at.before.span,
+                f"{at.before.shown} begins no line of timing",
+                BEGINNING[at.before.text],
+            )
     if hint:
         return at.mistake(Code.MISSPELT_KEYWORD, f"{at.found.shown} is not a word of the language here", hint)
     return _upper_bound_alone(at) or _restored(at)
@@ -60,6 +106,9 @@ def _upper_bound_alone(at: ParsePoint) -> Diagnostic | None:
 
 def _restored(at: ParsePoint) -> Diagnostic | None:
     """`lasts 25 min restored in yard`, `restored in yard within 10 min`."""
+    if at.before.text == "in" and at.found.is_number and _back(at, 2).text == "restored":
+        hint = f"write restored in base0 after {_duration_at(at, at.found)}"
+        return at.mistake(Code.UNEXPECTED, f"expected a place, found {at.found.shown}", hint)
     if "flies" not in at.accepted:
         return None
     if at.found.text in ("in", "at") and at.before.text == "restored":
@@ -152,7 +201,10 @@ def _duration_at(at: ParsePoint, number: Word) -> str:
 
 
 TIMING_MISTAKES: Final[tuple[Callable[[ParsePoint], Diagnostic | None], ...]] = (
+    foreign_unit,
     foreign_bound,
+    argued_endurance,
+    exact_time,
     bad_duration,
     unnamed_property,
     timeout_as_case,

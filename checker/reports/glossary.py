@@ -155,7 +155,7 @@ PROPERTIES: Final[Mapping[str, str]] = {
         follows in time whenever F is true. Between names it compares distances: `uav0 within 3 km of gcs0`.""",
     "endurance": """
     No vehicle is ever away from its place of restoration for longer than it lasts, by the bounds of the section
-    `timing`.""",
+    `timing`: `uav0 lasts 45 min, restored in base0 after 20 min`.""",
     "time": """
         The earliest and the latest moment at which a proposition first becomes true, or that it
         may never: `time "name": formula`.""",

@@ -303,7 +303,7 @@ class FormulaElaborator:
             case s.HasValue(agent, variable):
                 return IsBound(self._variable(agent, variable, bound))
         message = "this is about runs, and the property is about single configurations"
-        hint = 'write within 5 min "name": F leads to G' if self.is_timed else "write it in ltl or ctl"
+        hint = 'write within 5 min "name": F, or F leads to G' if self.is_timed else "write it in ltl or ctl"
         self.names.findings.add(Code.WRONG_LOGIC, node, message, hint)
         return Always(True)
 

@@ -295,9 +295,11 @@ class _Judge:
         message = f"this is always {outcome}: {_shown(pair.left)} is {_listed(left.sorts)}, and {those}"
         span = pair.left.span.to(pair.right.span)
         hint = self.unquoted(pair.left) or self.unquoted(pair.right)
-        self.findings.warn(
-            Code.ALWAYS_THE_SAME, span, message, hint or "compare it with a value of the same type"
+        observed = ValueSort.OBSERVATION in left.sorts | right.sorts and pair.operator != "in"
+        remedy = (
+            f"a message is taken by {_MESSAGE}" if observed else "compare it with a value of the same type"
         )
+        self.findings.warn(Code.ALWAYS_THE_SAME, span, message, hint or remedy)
 
     def unquoted(self, node: s.Node, sign: str = "") -> str:
         """Return the hint for a text that spells a name, anywhere in a node; a pattern writes `sign` before a name."""
@@ -305,6 +307,7 @@ class _Judge:
         return next((hint for part in s.walk(node) if (hint := unquoted(part, known, sign))), "")
 
 
+_MESSAGE: Final = 'case m: Message, or by its value: case ("found", x)'
 _SETS: Final = Need(COLLECTIONS, COLLECTION.remedy)
 _ROUTE: Final = Need(Sorts({ValueSort.ROUTE}), "routes are joined with routes: [a0] + [b0, a0]")
 _ADDENDS: Final = Need(HOLDERS | {ValueSort.NUMBER}, "add numbers, or join sets or routes: {a0} + {b0}")

@@ -42,6 +42,10 @@ def test_a_rule_is_explained_with_its_bar(bigactors):
     assert "───" in out
 
 
+def test_endurance_is_explained_with_the_line_that_it_needs(done):
+    assert "uav0 lasts 45 min, restored in base0 after 20 min" in done("explain", "endurance")
+
+
 def test_several_codes_are_explained_one_after_another(done):
     shown = done("explain", "LS704", "LS709")
     assert shown.index("LS704: ") < shown.index("\n\nLS709: ")

@@ -254,6 +254,7 @@ def test_a_limit_of_states_is_hard_and_said():
     found = run(growing.replace("A --> A.A", "A --> A.A"), max_states=5)
     assert (len(found), found.complete, found.reason) == (5, False, "the limit of 5 states was reached")
     assert found.expanded < 5
+    assert run(growing, max_states=1).reason == "the limit of 1 state was reached"
     late = run(growing, max_time=0.05)
     assert (late.complete, late.reason) == (False, "the limit of 0.05 seconds was reached")
 

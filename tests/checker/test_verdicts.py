@@ -90,6 +90,8 @@ def test_a_line_says_what_it_is_and_how_large(report):
 def test_an_incomplete_exploration_names_its_bound():
     found = explore(load_mission("oil_spill").initial, limits=Limits(configurations=5))
     assert repr(found).endswith(" complete=False: the limit of 5 configurations>")
+    found = explore(load_mission("oil_spill").initial, limits=Limits(configurations=1))
+    assert repr(found).endswith(" complete=False: the limit of 1 configuration>")
 
 
 def test_a_system_of_bigraphs_is_a_line_too():

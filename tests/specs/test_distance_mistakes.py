@@ -33,8 +33,30 @@ boat0 not in bay0  # not | write not boat0 in bay0
 actually boat0 not in bay0  # not | write not actually boat0 in bay0
 possibly boat0 not in bay0
     # not | write not possibly boat0 in bay0: it never is; or not surely boat0 in bay0: it may be elsewhere
+actually boat0 over bay0  # over | write in: uav0 in place0
+if boat0 in bay0 then boat0 in bay1  # if | an implication is written F -> G
+boat0 not within 5 km of bay0  # not | write not boat0 within ...
+never actually boat0 in bay0
+    # never | write not actually boat0 ...: an invariant is true at all times; in ltl, always not actually boat0 ...
+not never boat0 in bay0
+    # not never | write boat0 in ..., without both: in reachable, it is true at some time
 within 5 min boat0 in bay1  # within | a deadline is a property: within 5 min "name": formula
 """
+
+
+ELSEWHERE = r"""
+boat0 arrives ~> boat0 lands  # lands | write arrives: its flights end
+invariant "near": CLAIM ~> no races  # no | write race_freedom or deadlock_freedom
+(37.1, -8.641) ~> (37.1, -8.641) linked radio wifi  # wifi | separate channels by commas
+control timed ~> control timed believes { boat0 not known }  # not | write unknown: boat0 unknown
+"""
+
+
+@pytest.mark.parametrize(("change", "remedy"), list(rows(ELSEWHERE)))
+def test_a_mistake_beside_the_claims_has_its_remedy(change, remedy):
+    was, becomes = change.split(" ~> ")
+    text = SHORE.replace(was, becomes).replace("CLAIM", "boat0 in bay0")
+    assert [f"{place} | {hint}" for place, _, hint in shown(text)] == [remedy]
 
 
 @pytest.mark.parametrize(("claim", "remedy"), list(rows(CLAIMS)))

@@ -55,6 +55,15 @@ Drone flies at 8 m/s to 12 m/s ~> drone arrives within 2 min
 lasts 25 min, restored ~> lasts 25 min restored  # restored | write , restored in yard
 yard after 10 min ~> yard within 10 min  # within | write after 10 min: it has to be there so long
 lasts 25 ~> endurance 25  # endurance | write lasts 45 min, restored in airfield0 after 20 min
+lasts 25 min ~> lasts 25 minutes  # minutes | write 25 min
+at 8 m/s ~> at 8 mps  # mps | write 8 m/s
+endurance\n ~> endurance 25 min\n
+    # 25 | its times stand in timing { uav0 lasts 45 min, restored in base0 after 20 min }
+in yard after 10 min ~> in 10 min  # 10 | write restored in base0 after 10 min
+agents react ~> reaction  # reaction | bigActors have one bound together: agents react within 1 s
+messages over radio takes ~> message delay  # message | write messages over wifi within 5 s, or messages on one host
+control timed ~> control timing  # timing | write control timed
+agents react within 1 s ~> pump vanishes at 1 h  # at | write after 1 h, within 1 h
 lasts 25 ~> lasts for 25  # for | write lasts 5 min
 lasts 25 min ~> lasts 1 h 25 min  # 25 | write 85 min
 lasts 25 min ~> lasts "25 min"  # "25 min" | write lasts 5 min
@@ -86,7 +95,7 @@ time "row": ~> invariant:  # : | write a name in double quotes before the colon:
 within 25 min "there" ~> before 25 min "there"  # before | write within 5 min "name": formula
 time "row" ~> earliest "row"  # earliest | write time "name": formula
 endurance ~> battery  # battery | write endurance
-ended sprayer ~> always ended sprayer  # always ended sprayer | write within 5 min "name": F leads to G
+ended sprayer ~> always ended sprayer  # always ended sprayer | write within 5 min "name": F, or F leads to G
 control timed ~> control time  # time | write atomic or timed
 control timed\n ~>   # timing | write: control timed
 """
