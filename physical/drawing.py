@@ -6,7 +6,8 @@ The pure modules `map_view` and `map_labels` compute the positions.
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from itertools import pairwise
 from typing import Final
 
 from physical.map_crowds import HIDING
@@ -201,13 +202,14 @@ def _shortest_tree(spots: Sequence[Spot]) -> list[tuple[Spot, Spot]]:
     return lines
 
 
-def _flights(scene: Scene) -> list[tuple[str, Curve]]:
-    """Return the paths of entities in transit."""
-    return [
-        (name, arc(scene.middle(name), bounds(scene.sheet.outline(destination)).centre, -0.1))
-        for name in scene.near()
-        if name not in scene.ways.flying and (destination := scene.entities[name].destination) is not None
-    ]
+def _flights(scene: Scene) -> Iterator[tuple[str, Curve]]:
+    """Yield the paths of entities in transit: a bow, or straight legs by the places of the way."""
+    for name in scene.near():
+        entity = scene.entities[name]
+        if name not in scene.ways.flying and entity.destination is not None:
+            stops = [bounds(scene.sheet.outline(each)).centre for each in (*entity.via, entity.destination)]
+            for here, there in pairwise([scene.middle(name), *stops]):
+                yield name, arc(here, there, 0.0 if entity.via else -0.1)
 
 
 def _draw_markers(canvas: Canvas, scene: Scene) -> None:

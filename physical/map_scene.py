@@ -42,6 +42,7 @@ class MapEntity:
         carried_by: The name of its carrier.
         towards: The name of its destination, in transit.
         destination: The position of its destination, if known.
+        via: The positions by which it flies there.
     """
 
     name: str
@@ -52,6 +53,7 @@ class MapEntity:
     carried_by: str | None = None
     towards: str | None = None
     destination: Geometry | None = None
+    via: tuple[Geometry, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,10 +5,13 @@ from dataclasses import dataclass
 
 from bigraphs.bigraph import points
 from bigraphs.drawing import KINDS, LINKS
+from physical import Geometry
 from physical.drawing import MapEntity
+from semantics.behaviours.reaction_rules import moved
 from semantics.environment import Placing
 from semantics.state.configuration import Configuration
 from semantics.state.physical_model import Carried, InTransit
+from semantics.state.requests import FLY
 from semantics.state.signature import REGION, Name
 
 
@@ -81,8 +84,20 @@ def _map_entity(c: Configuration, name: Name) -> MapEntity:
         target = None if placement.to == REGION else physical.position(placement.to)
         destination = None if target is None else target.geometry
         start = placement.origin.geometry
-        return MapEntity(name, kind, start, False, links, None, placement.to, destination)
+        return MapEntity(name, kind, start, False, links, None, placement.to, destination, _via(c, name))
     return MapEntity(name, kind, placement.geometry, is_place(c, name), links)
+
+
+def _via(c: Configuration, name: Name) -> tuple[Geometry, ...]:
+    """Return the positions by which an entity in transit flies; P only has its destination."""
+    requests = (each.request for each in c.eta.all())
+    ways = (
+        each.reaction.via
+        for each in requests
+        if isinstance(each, FLY) and name in dict(moved(each.reaction, each.match))
+    )
+    spots = (c.structure.physical.position(place) for place in next(ways, ()))
+    return tuple(spot.geometry for spot in spots if spot is not None)
 
 
 def is_place(c: Configuration, name: Name) -> bool:

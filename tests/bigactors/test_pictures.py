@@ -27,6 +27,8 @@ from semantics.state.configuration import Label
 from semantics.state.initial import Beliefs, initial
 from semantics.state.physical_model import Placed, channels_cell, placement_cell
 from semantics.state.setting import Setting
+from semantics.successors import expand
+from specs.elaboration import load_mission
 
 ROOT = Path(__file__).parents[2]
 
@@ -78,6 +80,14 @@ def test_what_is_in_transit_shows_both_ends():
     assert uav.geometry is point(37.06, -8.55)
     assert uav.towards == "searchArea0"
     assert uav.destination is PLACEMENTS["searchArea0"].geometry
+
+
+def test_a_flight_is_shown_by_the_places_of_its_way():
+    """A direct line would cross the prison that the way goes round."""
+    c = load_mission("corridor").initial
+    while not (flying := [each for each in map_entities(c) if each.name == "uav0" and each.towards]):
+        c = next(step.target for step in expand(c).by_agents if "north" in str(step.label))
+    assert flying[0].via == (c.structure.physical.position("northGate0").geometry,)
 
 
 def test_a_place_that_may_appear_elsewhere_is_no_fixed_place():

@@ -1,6 +1,7 @@
 import os
 import subprocess
 import sys
+from dataclasses import replace
 from itertools import combinations
 from pathlib import Path
 from xml.etree import ElementTree
@@ -9,7 +10,7 @@ import pytest
 import shapely
 
 from physical import box, circle, point, polygon
-from physical.drawing import LATITUDES, LONGITUDES, MapEntity, draw_map
+from physical.drawing import LATITUDES, LONGITUDES, MapEntity, _flights, draw_map
 from physical.map_labels import GAP, Box, Wanted, place_labels
 from physical.map_scene import scene_of
 from physical.map_style import darker, kind_colours, kind_shapes
@@ -119,6 +120,17 @@ def entity(name, at=None, kind="UAV", **more):
 
 
 FLYING = entity("uav0", point(37.06, -8.55), towards="searchArea0", destination=SEARCH_AREA)
+
+
+def test_a_flight_goes_by_the_places_of_its_way():
+    shore = [each for each in OIL_SPILL if each.name != "uav0"]
+    gate = entity("gate0", point(37.05, -8.5), kind="Location", place=True)
+    shown = scene([*shore, gate, replace(FLYING, via=(gate.geometry,))])
+    (_, first), (_, last) = _flights(shown)
+    assert first[2] == last[0] == shown.middle("gate0")
+    assert len(list(_flights(scene([*shore, gate, FLYING])))) == 1
+
+
 WRITTEN = {
     "who is absent": ([*OIL_SPILL, entity("uav7"), entity("uav8")], {"not in P: uav7, uav8"}),
     "what an absent carrier holds": ([entity("a", carried_by="b"), entity("b")], {"not in P: a, b"}),
