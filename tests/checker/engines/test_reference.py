@@ -12,6 +12,7 @@ from scale import examples
 from checker import Limits, check, explore
 from checker.engines.choose import explore_by
 from checker.verdicts import Outcome
+from physical.wordings import counted
 from semantics.hypothesis_strategies import initial_configurations
 from semantics.races.monitor import monitored
 
@@ -88,7 +89,7 @@ def test_a_limit_of_configurations_cuts_off_what_is_beyond_and_nothing_if_it_is_
         found = explore(start(SLOW), limits=Limits(configurations=few))
         assert (found.configurations, *map(str, found.bounds)) == (
             whole.configurations[:few],
-            f"the limit of {few} configurations",
+            f"the limit of {counted(few, 'configuration')}",
         )
 
 
@@ -152,7 +153,7 @@ def test_a_limit_that_only_the_search_for_stale_observations_meets_is_said_to_be
     plain = len(explore(mission.initial).configurations)
     report = check(mission.initial, mission.properties, Limits(configurations=plain))
     assert [*map(str, report.bounds)] == [
-        f"the limit of {plain} configurations, in the search for stale observations"
+        f"the limit of {counted(plain, 'configuration')}, in the search for stale observations"
     ]
     assert report.verdicts[0].outcome is Outcome.HOLDS
     assert report.exit_code in (1, 3)
