@@ -9,9 +9,9 @@ IS_WHOLE = "BIGACTORS_FUZZ" in os.environ
 PART = 3
 
 
-def examples(most, **more):
-    """Return the settings of a property that is tried with so many examples: `make test` takes a third."""
-    return settings(max_examples=most if IS_WHOLE else most // PART, **more)
+def examples(most, part=PART, **more):
+    """Return the settings of a property that is tried with so many examples: `make test` takes the given part of them."""
+    return settings(max_examples=most if IS_WHOLE else most // part, **more)
 
 
 def crossed(names, variations):

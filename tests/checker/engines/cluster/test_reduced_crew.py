@@ -59,6 +59,7 @@ def test_two_workers_visit_the_representatives_that_one_process_visits(name, var
             assert set(found.configurations) == set(alone.configurations)
 
 
+@pytest.mark.long
 def test_two_workers_fold_representatives(monkeypatch):
     monkeypatch.setattr(row_store, "PLAIN", 0)
     monkeypatch.setattr(row_store, "COMPRESSED_FROM", 8)

@@ -182,7 +182,14 @@ def test_rows_go_over_to_files_under_several_threads(tmp_path, monkeypatch, thre
 
 
 @pytest.mark.usefixtures("kept")
-@pytest.mark.parametrize("reductions", [(Reduction.POR,), (Reduction.SYMMETRY,), tuple(Reduction)])
+@pytest.mark.parametrize(
+    "reductions",
+    [
+        (Reduction.SYMMETRY,),
+        pytest.param((Reduction.POR,), marks=pytest.mark.long),
+        pytest.param(tuple(Reduction), marks=pytest.mark.long),
+    ],
+)
 def test_reduced_searches_go_over_to_files(tmp_path, monkeypatch, reductions, full_memory):
     monkeypatch.setattr(explorer, "CHUNK", 2)
     loaded = mission(LOOKS, 6, 'check { ltl "all come": F G forall r: Robot . actually r in room0 }')

@@ -150,7 +150,7 @@ def assert_reduced_soundly(c, properties):
 
 
 @given(st.data(), swarms(), asked())
-@examples(36, suppress_health_check=list(HealthCheck))
+@examples(36, 9, suppress_health_check=list(HealthCheck))
 def test_generated_swarms_are_decided_alike_with_and_without_symmetry(data, text, properties):
     c = load(text, "").initial
     assert_reduced_soundly(with_timing(c, data.draw(alike_timings(c.setting))), properties)
