@@ -122,8 +122,8 @@ FOR_EVER = [
             (
                 5,
                 (
-                    "a on uav0 asks for MOVE_HOST_TO spill0; then this stays pending: a command rests on a belief that is "
-                    "no longer true"
+                    "a on uav0 asks for MOVE_HOST_TO spill0; then this stays pending: a command rests on a belief that "
+                    "is no longer true"
                 ),
             )
         ],
