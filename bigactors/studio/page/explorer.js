@@ -77,7 +77,7 @@ export function Explorer({ ask, state = NOTHING, onLook = () => {}, keys = null,
   });
 
   return html`<div class="explorer" ref=${root}>
-    ${problem && html`<p class="problem" role="alert">${problem}</p>`}
+    ${problem ? html`<p class="problem" role="alert">${problem}</p>` : !look && html`<p class="quiet">The beginning of the mission is computed …</p>`}
     ${look && html`
       <${Story} look=${look} go=${go} />
       <${Controls} look=${look} go=${go} move=${move} playing=${playing} play=${play} />
