@@ -324,7 +324,7 @@ function Flight({ app, unsaved }) {
   const why = whyNotFlown(state, report, unsaved);
   return html`${flight.state === "flying" && html`<a href=${flight.link} target="_blank" rel="noreferrer">Open the console of the flight</a>`}
     ${flight.state === "flown" && html`<span class="quiet" role="status">The flight has ended: Open a run takes ${flight.recording}</span>`}
-    <span class="quiet why">${why}</span>
+    <span class="quiet unflown">${why}</span>
     <button type="button" class="fly" disabled=${why !== "" || flight.state === "starting"} title=${why || "with simulated vehicles, ten times as fast, in the operator's console"} onClick=${app.fly}>${flight.state === "starting" ? "Starting …" : "Fly"}</button>`;
 }
 

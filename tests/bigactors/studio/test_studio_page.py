@@ -170,14 +170,15 @@ def replace(page, words, other):
 
 
 def drag(page, handle, to):
-    """Drag a handle of the map to a point of it; wait until the text has followed."""
-    before = text_of(page)
+    """Drag a handle of the map to a point of it; wait until the text and the handles have followed."""
+    shapes = "JSON.stringify(studio.shapes.value)"
+    before = page.evaluate(shapes)
     box, there = page.locator(handle).bounding_box(), page.locator("#map").bounding_box()
     page.mouse.move(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
     page.mouse.down()
     page.mouse.move(there["x"] + to[0], there["y"] + to[1], steps=5)
     page.mouse.up()
-    until(page, f"studio.editor.text !== {json.dumps(before)}")
+    until(page, f"{shapes} !== {json.dumps(before)}")
 
 
 @pytest.mark.long
@@ -202,7 +203,7 @@ def mends_a_mistake(page, theme):
     replace(page, "MOVE_HOST_TO bay0", "MOVE_HOST_TO bayy0")
     says(page, ".verdicts > [role=status]", "Not checked: the text has mistakes.")
     says(page, ".explorer .problem", "the text has mistakes: this is still the text before them")
-    says(page, ".why", "Fly: mend the mistakes of the text first.")
+    says(page, ".unflown", "Fly: mend the mistakes of the text first.")
     look_at(page, f"3-mistake-{theme}")
     page.hover(".cm-lintRange-error")
     page.click(".cm-tooltip-hover .cm-diagnosticAction >> text=Write 'bay0'")
@@ -229,7 +230,7 @@ def draws_a_place(page, theme):
 def breaks_a_property_and_mends_it(page, theme):
     replace(page, "MOVE_HOST_TO bay0", "MOVE_HOST_TO location0")
     shows(page, ".verdicts .verdict-violated")
-    says(page, ".why", "Fly: everything has to hold first.")
+    says(page, ".unflown", "Fly: everything has to hold first.")
     put_cursor(page, "reachable")
     look_at(page, f"5-violated-{theme}")
     page.click(".cm-margin .sign-violated")
@@ -249,16 +250,16 @@ def explores(page, theme):
     for steps in (1, 2):
         page.click(".choices button >> text=pilot on uav0" if steps == 1 else ".choices button >> nth=0")
         until(page, f"studio.shown.value.at === {steps}")
-    page.fill("[aria-label='go to where this is true']", "actually boat0 in region")
+    page.fill("[aria-label='go to where this is true']", "not actually boat0 in bay0")
     page.click("text=Go to where")
-    until(page, "studio.store.section('entities').get('boat0').actual === 'region'")
+    until(page, "studio.store.section('entities').get('boat0').actual !== 'bay0'")
     page.get_by_role("tab", name="Graph").click()
     shows(page, ".graph .node")
     look_at(page, f"7-explored-{theme}")
 
 
 def flies(page, theme):
-    says(page, ".why", "Fly: save the text first.")
+    says(page, ".unflown", "Fly: save the text first.")
     page.keyboard.press("Control+s")
     says(page, ".top [role=status]", "saved")
     page.click("button.fly")
