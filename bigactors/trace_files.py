@@ -13,7 +13,7 @@ from bigactors.pages import MOST_PICTURES, Story, trace_page
 from bigactors.picture_files import draw_run
 from bigactors.pictures import RegionMarks, marks_of
 from checker import Trace, print_trace, to_json
-from checker.reports.causes import Cause, causes_of, formulas_of
+from checker.reports.causes import Cause, causes_of, formulas_of, headline_of
 from physical.wordings import counted
 from semantics.properties.kinds import PropertyKind
 from semantics.state.printing import print_configuration
@@ -64,7 +64,7 @@ def evidence_of(checked: Checked) -> Iterator[Evidence]:
                 violation.trace,
                 True,
                 telling=True,
-                headline=f"{name} is violated: {verdict.property.written or violation.kind}",
+                headline=headline_of(verdict.property, violation.kind),
                 causes=causes_of(violation.trace, violation, formulas),
                 details=violation.told,
                 marks=marks_of(

@@ -2,10 +2,16 @@
 
 import shutil
 from contextlib import contextmanager
+from pathlib import Path
 
 import pytest
 
-PHONE, DESK = {"width": 390, "height": 844}, {"width": 1440, "height": 900}
+PHONE, TABLET, DESK = (
+    {"width": 390, "height": 844},
+    {"width": 1024, "height": 768},
+    {"width": 1440, "height": 900},
+)
+AXE = Path(__file__).parents[1] / "adapters" / "console" / "page" / "node_modules" / "axe-core" / "axe.min.js"
 
 
 PATIENCE = 60_000
@@ -80,3 +86,24 @@ def says(page, selector, text):
 def overflow(page):
     """Return how far a page could be moved sideways, in pixels."""
     return page.evaluate("document.documentElement.scrollWidth - document.documentElement.clientWidth")
+
+
+SPILLED = """() => [...document.querySelectorAll("button, input, select, label, a, h1, h2, p")].filter((each) => {
+  const { right, left, width, height } = each.getBoundingClientRect();
+  const moves = ".scroll, .rows, .cm-editor, .leaflet-container, .frame, .unseen, [hidden]";
+  return each.checkVisibility() && width > 1 && height > 1 && (right > innerWidth + 1 || left < -1) && !each.closest(moves);
+}).map((each) => each.outerHTML.slice(0, 120))"""
+
+
+def spilled(page):
+    """Return what is cut at a side of the page, where nothing can be moved into view."""
+    return page.evaluate(SPILLED)
+
+
+def faults(page):
+    """Return the rules that axe finds violated, each with the first elements; skip the test without axe-core."""
+    if not AXE.exists():
+        pytest.skip("axe-core is not there: `make parts` fetches it")
+    page.evaluate(f"{AXE.read_text(encoding='utf-8')};0")
+    found = page.evaluate("axe.run(document, { resultTypes: ['violations'] })")
+    return [(each["id"], [node["html"] for node in each["nodes"]][:3]) for each in found["violations"]]

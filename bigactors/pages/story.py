@@ -211,7 +211,10 @@ def _data(data: dict[str, Any]) -> str:
 def _unscripted(told: PageContent) -> str:
     """Return what the page shows before its script runs, and without it."""
     story = told.story
-    causes = " · ".join(f"{text(cause.text)} at c{cause.number}" for cause in story.causes)
+    causes = " · ".join(
+        f"{text(cause.text)} {'at' if cause.is_step else 'after'} step {cause.number}"
+        for cause in story.causes
+    )
     here = told.data["order"][story.start]
     numbers = [] if here is None else told.data["looks"][here]["pictures"]
     pictures = [told.data["pictures"][number] for number in numbers if number is not None]

@@ -98,6 +98,7 @@ class ChildProcess:
 
 
 LINK: Final = "console, to act:"
+RECORDING: Final = "run.mcap"
 MOST_LINES: Final = 20
 """The lines of a flight that does not begin which are shown."""
 
@@ -119,8 +120,9 @@ class FlightProcess:
         await self.end()
         self._folder = TemporaryDirectory(prefix="bigactors-")
         module = f"{__package__}.simulated_flight"
-        line = (sys.executable, "-P", "-m", module, str(file), self._folder.name)
-        self._process = await asyncio.create_subprocess_exec(*line, stdout=PIPE, stderr=STDOUT)
+        line = (sys.executable, "-P", "-m", module, file.name, self._folder.name)
+        there = {"cwd": file.resolve().parent, "stdout": PIPE, "stderr": STDOUT}
+        self._process = await asyncio.create_subprocess_exec(*line, **there)
         said: list[str] = []
         with contextlib.suppress(TimeoutError):
             async with asyncio.timeout(STARTING):
@@ -131,6 +133,14 @@ class FlightProcess:
                     said = [*said, each][-MOST_LINES:]
         await self.end()
         raise Mistake("the flight does not begin:\n" + "\n".join(said))
+
+    async def recording(self) -> Path | None:
+        """Wait until the flight has ended, and return its recording; None if another one took its place."""
+        rest, folder = self._rest, self._folder
+        if rest is None or folder is None:
+            return None
+        await asyncio.wait([rest])
+        return None if rest.cancelled() else Path(folder.name) / RECORDING
 
     async def end(self) -> None:
         """End the flight, if there is one."""

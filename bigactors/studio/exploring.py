@@ -26,7 +26,7 @@ def answers(lines: TextIO) -> Iterator[dict[str, Any]]:
     asked = json.loads(lines.readline())
     mission = reading_of(asked["name"], asked["text"], Path(asked["directory"])).diagnosis.elaborated
     if mission is None:
-        yield {"refused": "the text has mistakes: what is shown is of a text without them"}
+        yield {"refused": "the text has mistakes: this is still the text before them"}
         return
     given = None if asked["given"] is None else Path(asked["given"])
     exploration = Exploration(mission, Path(asked["directory"]), given)

@@ -54,6 +54,11 @@ def read_mission(path: Path) -> Saved:
     return Saved(plain, _digest(data), "\r\n" in text)
 
 
+def is_empty(path: Path) -> bool:
+    """Return whether a mission's file is missing or has no text yet; raises Mistake."""
+    return not path.exists() or not read_mission(path).text.strip()
+
+
 def save_mission(path: Path, text: str, over: str) -> Saved:
     """Replace a mission's text, with the line ends of the file.
 
@@ -84,7 +89,7 @@ def begin_mission(folder: Path, name: str, source: str) -> Path:
     if shipped is not None:
         text = shipped.read_text(encoding="utf-8")
     try:
-        with path.open("x", encoding="utf-8") as file:
+        with path.open("w" if path.exists() and is_empty(path) else "x", encoding="utf-8") as file:
             file.write(text)
         if shipped is not None:
             _copy_companions(shipped, folder)

@@ -28,24 +28,26 @@ def run_json(trace: Trace, causes: Sequence[Cause] = ()) -> dict[str, Any]:
     """Return a run in lanes: their names, its steps in words, and the steps that only repeat others."""
     lanes = lanes_of_trace(trace)
     rows = folded(lanes.steps)
-    reasons = {cause.number: cause.text for cause in causes}
+    guilty = {cause.number for cause in causes if cause.is_step}
     pairs = zip(lanes.steps, trace.configurations, trace.configurations[1:], strict=False)
     words = cache(step_words)  # a loop repeats its steps
     return {
         "lanes": lanes.names,
         "hosts": [agent_words(trace.initial, name) for name in lanes.names],
         "steps": [
-            _step_json(step, words(before, step.label, after), reasons.get(step.number))
+            _step_json(step, words(before, step.label, after), is_cause=step.number in guilty)
             for step, before, after in pairs
         ],
         "folds": [[row.number, row.last, row.about] for row in rows if isinstance(row, Repetition)],
-        "causes": [{"step": cause.number, "text": cause.text} for cause in causes],
+        "causes": [
+            {"step": cause.number, "text": cause.text, "after": not cause.is_step} for cause in causes
+        ],
         "loop": trace.loop,
         "end": lanes.end,
     }
 
 
-def _step_json(step: LaneStep, words: str, reason: str | None) -> dict[str, Any]:
+def _step_json(step: LaneStep, words: str, *, is_cause: bool) -> dict[str, Any]:
     told: dict[str, Any] = {
         "lane": step.lane,
         "rule": step.label.rule,
@@ -54,7 +56,7 @@ def _step_json(step: LaneStep, words: str, reason: str | None) -> dict[str, Any]
         "changes": [[change.part, change.text] for change in step.changes],
         "sort": "serves" if step.serves else "environment" if step.label.agent is None else "agent",
     }
-    more = {"date": step.date, "at": step.at, "role": step.role, "cause": reason}
+    more = {"date": step.date, "at": step.at, "role": step.role, "cause": is_cause or None}
     return told | {key: value for key, value in more.items() if value not in ("", None)}
 
 

@@ -19,6 +19,7 @@ from bigactors.studio.mission_file import (
     Overwritten,
     Saved,
     begin_mission,
+    is_empty,
     keep_places,
     read_mission,
     save_mission,
@@ -168,16 +169,20 @@ class Session:
             await self._send("flying", id=number, answer=await self._desk.flight.begin(self._file))
         except Mistake as mistake:
             await self._send("flying", id=number, refused=str(mistake))
+            return
+        if (recording := await self._desk.flight.recording()) is not None:
+            await self._send("flown", recording=str(recording))
 
     # --- the file
 
     async def _greet(self) -> None:
-        if self._file.exists():
+        if not is_empty(self._file):
             await self._open()
-        else:
-            stem, shipped = self._file.stem, shipped_missions()
-            name = "" if stem in shipped else stem
-            await self._send("start", name=name, source=stem if stem in shipped else "", shipped=[*shipped])
+            return
+        stem, shipped = self._file.stem, shipped_missions()
+        name, source = ("", stem) if stem in shipped else (stem, "")
+        folder = str(self._file.resolve().parent)
+        await self._send("start", name=name, source=source, folder=folder, shipped=[*shipped])
 
     async def _open(self) -> None:
         """Send the mission's text, with what an editor needs."""

@@ -6,15 +6,20 @@ the console among it. Only the vehicles are simulated, and time passes ten times
 
 from __future__ import annotations
 
+import json
 import sys
+from contextlib import redirect_stderr, redirect_stdout
+from io import StringIO
 from pathlib import Path
-from typing import Final
+from typing import Any, Final
 
 from bigactors.cli import main as command
 from bigactors.cli import reported
 from bigactors.commands.run.station_flight import driven
+from bigactors.exits import Exit
 from bigactors.mission_lookup import open_mission
 from bigactors.mistakes import Mistake
+from bigactors.studio.child_process import RECORDING
 from specs.elaboration import ElaboratedMission, Variation
 
 SPEED: Final = 10
@@ -28,12 +33,25 @@ def main() -> int:
 
 
 def _flown(file: str, folder: Path) -> int:
-    verdict = str(folder / "verdict.json")
-    if code := command(["check", "--no-traces", "--control", "timed", "--verdict", verdict, file]):
+    verdict, report = str(folder / "verdict.json"), folder / "report.json"
+    asked = ["check", "--no-traces", "--control", "timed", "--verdict", verdict, "--json", str(report), file]
+    with redirect_stdout(StringIO()) as said, redirect_stderr(said):
+        code = command(asked)
+    if code == Exit.VIOLATED:
+        raise _unflyable(json.loads(report.read_text("utf-8")))
+    if code:
         return code
     vehicles = [f"--vehicle={name}={COPTER}" for name in _driven(open_mission(file, Variation()))]
-    files = [f"--verdict={verdict}", f"--record={folder / 'run.mcap'}", f"--socket={folder / 'run.sock'}"]
+    files = [f"--verdict={verdict}", f"--record={folder / RECORDING}", f"--socket={folder / 'run.sock'}"]
     return command(["run", file, "--console", f"--speed={SPEED}", *vehicles, *files])
+
+
+def _unflyable(report: dict[str, Any]) -> Mistake:
+    """Return what does not hold of flights that take time, though it may hold of those that take none."""
+    found = (each for each in report["properties"] if each["verdict"] == "violated")
+    words = "; ".join(f"{each['name']}: {each['violations'][0]['message']}" for each in found)
+    hint = "write the line control timed into the text: Show how then shows the run"
+    return Mistake(f"not all holds where a flight takes time: {words}", hint)
 
 
 def _driven(mission: ElaboratedMission) -> list[str]:

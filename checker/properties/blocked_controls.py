@@ -21,12 +21,12 @@ def _unmatched(c: Configuration, request: CTR | FLY) -> Iterator[str]:
     redex, logical = request.reaction.redex, c.structure.logical
     named = [node for node in redex.nodes if isinstance(node, str)]
     unknown = [node for node in named if node not in logical]
-    yield from (f"L knows no {node}" for node in unknown)
+    yield from (f"{node} is unknown" for node in unknown)
     for node, place in redex.parents:
         if isinstance(node, str) and isinstance(place, str) and node not in unknown:
             parent = logical.parent(node)
             if parent != place:
-                yield f"{node} is not in {place}: L has it in {_place(parent)}"
+                yield f"{node} is not in {place}: it is believed in {_place(parent)}"
     for link in dict.fromkeys(link for link, _ in redex.links):
         nodes = [node for other, node in redex.links if other == link and isinstance(node, str)]
         yield from _unlinked(c, link, [node for node in nodes if node not in unknown])
@@ -82,7 +82,7 @@ def _unrealised(c: Configuration, request: CTR | FLY) -> Iterator[str]:
     for match in found:
         for node, place in moved(request.reaction, match):
             if node not in physical or (place != REGION and place not in physical):
-                yield f"P does not show {node if node not in physical else place}"
+                yield f"{node if node not in physical else place} is gone"
             elif place == REGION:
                 yield f"{node} would be in no place: a vehicle needs a place to go to"
             elif not setting.signature[setting.kind(node)].driven:

@@ -175,7 +175,7 @@ class Deadlines:
 
     def _exhausted(self, vehicle: str, run: TimedRun) -> Violation:
         lasts, trace = dict(self.timing.endurances)[vehicle].lasts, dated_trace(self.times, run)
-        message = f"{vehicle} lasts {self.text(lasts)}, and is unrestored for longer at {self.clock(run.end)}"
+        message = f"{vehicle} lasts {self.text(lasts)}, and is still not restored at {self.clock(run.end)}"
         details = tuple(self._unsaid(trace.configurations[-1]))
         since = run.end - lasts - 1
         path = self._path(run, is_restored, since, vehicle)

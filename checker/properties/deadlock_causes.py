@@ -70,8 +70,8 @@ def _missing(c: Configuration, here: Name, there: Name) -> str:
         return f": {' and '.join(down)} {'is' if len(down) == 1 else 'are'} down"
     believed = set(logical.links(here)).intersection(logical.links(there))
     if both and not believed.intersection(both):
-        return f" in L: P has both on {' and '.join(each for each in both if each not in down)}"
-    return ": P has both on none" if believed else ""
+        return f" in belief: both are actually on {' and '.join(each for each in both if each not in down)}"
+    return ": both are actually on none" if believed else ""
 
 
 def _promise(c: Configuration, here: Name, there: Name) -> str:

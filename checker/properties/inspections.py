@@ -141,18 +141,15 @@ def disagreements(c: Configuration, request: CTR | FLY) -> tuple[str, ...]:
     lines = []
     for node in sorted({node for node in request.reaction.redex.nodes if isinstance(node, str)}):
         if node not in structure.physical:
-            lines.append(
-                f"{node}: L has it in {structure.logical.parent(node) or 'no place'}, P does not show it"
-            )
+            lines.append(f"{node}: believed in {structure.logical.parent(node) or 'no place'}, actually gone")
             continue
         believed, actual = structure.logical.parent(node), structure.physical.abstract_parent(node)
         links, seen = structure.logical.links(node), structure.physical.links(node)
         if believed != actual:
-            lines.append(f"{node}: L has it in {believed or 'no place'}, P shows it in {actual}")
+            lines.append(f"{node}: believed in {believed or 'no place'}, actually in {actual}")
         if links != seen:
-            lines.append(
-                f"{node}: L has it on {', '.join(links) or 'no link'}, P on {', '.join(seen) or 'none'}"
-            )
+            believed_on, on = (", ".join(each) or "no link" for each in (links, seen))
+            lines.append(f"{node}: believed on {believed_on}, actually on {on}")
     return tuple(lines)
 
 

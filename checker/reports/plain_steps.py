@@ -71,7 +71,8 @@ def _sense(label: Label, after: Configuration, _: tuple[Difference, ...]) -> str
     query = label.about.query
     ready = (each.request for each in after.eta.all() if each.request.agent == label.agent)
     seen = next(each.observation for each in ready if isinstance(each, READY) and each.query == query)
-    return f"{look_words(query)}, and sees {seen_words(query, seen)}"
+    missed = f": it misses {', '.join(label.missed)}" if label.missed else ""
+    return f"{look_words(query)}, and sees {seen_words(query, seen)}{missed}"
 
 
 def _control(label: Label, _: Configuration, changes: tuple[Difference, ...]) -> str:
@@ -120,7 +121,7 @@ def _sends(label: Label, _: Configuration, __: tuple[Difference, ...]) -> str:
 
 def _sent(label: Label, _: Configuration, __: tuple[Difference, ...]) -> str:
     assert isinstance(label.about, SND)
-    return f"is heard: {label.about.to} gets {show(label.about.message)}"
+    return f"delivers {show(label.about.message)} to {label.about.to}"
 
 
 def _migrates(label: Label, _: Configuration, __: tuple[Difference, ...]) -> str:

@@ -69,22 +69,21 @@ SPILLED = """() => [...document.querySelectorAll('.lanes-pane .step')].filter((b
 
 def test_a_reader_learns_who_did_what_and_when_from_the_page_of_a_race(opened):
     page = opened(violation("look_before_entry_racy", "race_freedom"))
-    says(
-        page, "header", re.compile("look_before_entry_racy.*race_freedom is violated: stale-observation race")
-    )
-    says(page, ".controls output", "c12 of c12")
+    about = "race_freedom is violated: a command rests on an observation that is no longer true"
+    says(page, "header", re.compile(f"look_before_entry_racy.*{about}"))
+    says(page, ".controls output", "step 12 of 12")
     told = page.locator(".story a").all_inner_texts()
     assert [each.strip() for each in told] == [
-        "b on uav1 looks into gate0, and sees nobody at c7",
-        "uav0 moves from north0 to gate0, as a wants at c8",
-        "b acts on what it saw: uav1 moves from south0 to gate0 at c12",
+        "b on uav1 looks into gate0, and sees nobody at step 7",
+        "uav0 moves from north0 to gate0, as a wants at step 8",
+        "b acts on what it saw: uav1 moves from south0 to gate0 at step 12",
     ]
     assert page.locator(".lanes-pane tr.guilty .role").all_inner_texts() == ["sensed", "changed", "acted"]
     page.locator(".story a").first.click()
-    says(page, ".controls output", "c7 of c12")
+    says(page, ".controls output", "step 7 of 12")
     assert page.locator(".stage.guilty").count() == 1
     page.keyboard.press("ArrowLeft")
-    says(page, ".controls output", "c6 of c12")
+    says(page, ".controls output", "step 6 of 12")
     assert page.locator(".stage.guilty").count() == 0
     says(page, "footer", re.compile(r".*CTR\(b, MOVE_HOST_TO gate0\) depends on .*sha256:[0-9a-f]{64}.*"))
 
@@ -125,14 +124,14 @@ def test_a_trace_is_stepped_through_searched_and_read_on_a_phone(opened):
     page.fill("input[type=search]", "REQ_OBS")
     says(page, ".lanes-pane output", f"{len(wanted)} found")
     page.press("input[type=search]", "Enter")
-    says(page, ".controls output", f"c{wanted[0]} of c{len(trace)}")
+    says(page, ".controls output", f"step {wanted[0]} of {len(trace)}")
     page.evaluate("document.activeElement.blur()")
     page.keyboard.press("Home")
     page.keyboard.press("ArrowRight")
-    says(page, ".controls output", f"c1 of c{len(trace)}")
+    says(page, ".controls output", f"step 1 of {len(trace)}")
     assert page.get_attribute("tr[aria-current=step]", "data-step") == "1"
     page.keyboard.press("End")
-    says(page, ".controls output", f"c{len(trace)} of c{len(trace)}")
+    says(page, ".controls output", f"step {len(trace)} of {len(trace)}")
 
 
 def test_each_step_of_a_loop_is_reached_folded_and_unfolded_on_desk_and_phone(opened):
@@ -141,7 +140,7 @@ def test_each_step_of_a_loop_is_reached_folded_and_unfolded_on_desk_and_phone(op
     for size in (DESK, PHONE):
         page.set_viewport_size(size)
         page.evaluate("location.hash = '#c1234'")
-        says(page, ".controls output", f"c1234 of c{len(flight)} · 616.5 s")
+        says(page, ".controls output", f"step 1234 of {len(flight)} · 616.5 s")
         fold = page.locator("tr[aria-current=step] button[aria-expanded]")
         fold.click()
         assert page.get_attribute("tr[aria-current=step]", "data-step") == "1234"
@@ -169,7 +168,7 @@ def test_without_scripts_the_page_has_its_story_and_its_lanes(browser, tmp_path)
     context = browser.new_context(java_script_enabled=False)
     page = context.new_page()
     page.goto(f"file://{tmp_path}/page.html")
-    says(page, ".story", re.compile(".*looks into gate0, and sees nobody at c7 · .*at c12"))
+    says(page, ".story", re.compile(".*looks into gate0, and sees nobody at step 7 · .*at step 12"))
     assert page.locator("main > div > svg").count() == 4
     context.close()
 

@@ -26,7 +26,7 @@ export class Editor {
     const keys = [{ key: "Mod-s", preventDefault: true, run: () => (save(), true) }, ...closeBracketsKeymap, ...lintKeymap, ...completionKeymap, ...formatKeymap, ...renameKeymap, ...jumpToDefinitionKeymap, ...findReferencesKeymap];
     const view = [lineNumbers(), margin(pressed), lintGutter(), highlightSpecialChars(), drawSelection(), highlightActiveLine(), highlightActiveLineGutter(), bracketMatching(), LOOK, EditorView.lineWrapping];
     const editing = [history(), indentOnInput(), closeBrackets(), autocompletion(), search({ top: true }), keymap.of([...keys, ...searchKeymap, ...historyKeymap, ...defaultKeymap, indentWithTab])];
-    const about = EditorView.contentAttributes.of({ "aria-label": "The mission's text. Escape and Tab leave it.", spellcheck: "false" });
+    const about = EditorView.contentAttributes.of({ tabindex: "0", "aria-label": "The mission's text. Escape and Tab leave it.", spellcheck: "false" });
     const listening = EditorView.updateListener.of((update) => this.#hear(update));
     const state = EditorState.create({ doc: text, extensions: [view, editing, about, names, missionLanguage(grammar), this.client.plugin(uri, "mission"), listening] });
     const root = element.attachShadow({ mode: "open" }); // its style sheets need no exception from the page's policy

@@ -77,7 +77,7 @@ export function Explorer({ ask, state = NOTHING, onLook = () => {}, keys = null,
   });
 
   return html`<div class="explorer" ref=${root}>
-    ${problem && html`<p class="problem" role="alert">${problem}</p>`}
+    ${problem ? html`<p class="problem" role="alert">${problem}</p>` : !look && html`<p class="quiet">The beginning of the mission is computed …</p>`}
     ${look && html`
       <${Story} look=${look} go=${go} />
       <${Controls} look=${look} go=${go} move=${move} playing=${playing} play=${play} />
@@ -106,12 +106,12 @@ function Runs({ look, go, graph }) {
 /** The causes of what the run ends in, each with a link to its step. */
 export function Story({ look, go }) {
   if (look.causes.length === 0) return null;
-  return html`<p class="story">${look.causes.map(({ step, text }, n) => html`${n > 0 && html`<span class="then"> · </span>`}<a key=${n} href=${`#c${step}`} aria-current=${step === look.at ? "step" : null} onClick=${(event) => (event.preventDefault(), go(step))}>
-    ${text} <span class="at">at c${step}</span></a>`)}</p>`;
+  return html`<ol class="story">${look.causes.map(({ step, text, after }, n) => html`<li key=${n}><a href=${`#c${step}`} aria-current=${step === look.at ? "step" : null} onClick=${(event) => (event.preventDefault(), go(step))}>
+    ${text} <span class="at">${after ? "after" : "at"} ${numberOf(look, step)}</span></a></li>`)}</ol>`;
 }
 
-/** The number of a configuration, of how many, and its date. */
-const numberOf = (look, at, of = "") => `c${at}${of}${look.steps[at - 1]?.date ? ` · ${look.steps[at - 1].date}` : ""}`;
+/** The step to a configuration, of how many, and its date. */
+const numberOf = (look, at, of = "") => `step ${at}${of}${look.steps[at - 1]?.date ? ` · ${look.steps[at - 1].date}` : ""}`;
 
 function Controls({ look, go, move, playing, play }) {
   const button = (sign, says, does) => html`<button type="button" title=${says} aria-label=${says} onClick=${does}>${sign}</button>`;
@@ -120,12 +120,15 @@ function Controls({ look, go, move, playing, play }) {
     ${button("⇤", "first configuration (Home)", () => go(0))}${button("←", "one step back (left arrow)", () => move(-1))}
     ${button("→", "one step on (right arrow)", () => move(1))}${button("⇥", "last configuration (End)", () => go(look.length))}
     <input type="range" min="0" max=${look.length} step="1" value=${look.at} aria-label="configuration" aria-valuetext=${`${numberOf(look, look.at)}: ${wordsOf(look)}`} onInput=${(event) => go(Number(event.currentTarget.value))} />
-    <output>${numberOf(look, look.at, ` of c${look.length}`)}</output>
+    <output>${numberOf(look, look.at, ` of ${look.length}`)}</output>
   </div>
-  <p class=${`caption ${look.steps[look.at - 1]?.cause ? "guilty" : ""}`} aria-live="polite">${wordsOf(look)}</p>`;
+  <p class=${`caption ${isGuilty(look) ? "guilty" : ""}`} aria-live="polite">${wordsOf(look)}</p>`;
 }
 
-const wordsOf = (look) => look.steps[look.at - 1]?.cause ?? look.steps[look.at - 1]?.words ?? "the first configuration";
+/** Whether the story is about the configuration that is shown. */
+export const isGuilty = (look) => look.causes.some(({ step }) => step === look.at);
+
+const wordsOf = (look) => look.steps[look.at - 1]?.words ?? "the beginning";
 
 /** What an exploration does at a wish: a walk at random, a search, and traces. */
 function Wishes({ look, send }) {
@@ -208,7 +211,7 @@ export function Lanes({ look, go }) {
   const shown = rows.slice(begin, begin + MOST_ROWS);
   const lapses = lapsesOf(look);
   const longest = lapses.reduce((most, lapse) => Math.max(most, lapse), 1);
-  const hits = wish ? look.steps.flatMap((step, n) => (`${step.words} ${step.label} c${n + 1}`.toLowerCase().includes(wish) ? [n + 1] : [])) : [];
+  const hits = wish ? look.steps.flatMap((step, n) => (`${step.words} ${step.label} step ${n + 1}`.toLowerCase().includes(wish) ? [n + 1] : [])) : [];
   const found = new Set(hits);
   const seek = (event) => {
     if (event.key !== "Enter" || hits.length === 0) return;
@@ -226,22 +229,22 @@ export function Lanes({ look, go }) {
   }, [look.run, look.at, open]);
   const gapOf = (lapse) => (lapse > 0 ? { style: { "--gap": `${Math.max(GAP.least, Math.round((GAP.most * lapse) / longest))}px` } } : {});
   const cell = (row) => {
-    if (row.first) return html`<td class="several" colspan=${look.lanes.length}><button type="button" aria-expanded=${String(open.has(row.first))} onClick=${() => toggle(row.first)}>${open.has(row.first) ? "fold" : "unfold"}</button> ↻ c${row.first} to c${row.last}: ${row.about}</td>`;
+    if (row.first) return html`<td class="several" colspan=${look.lanes.length}><button type="button" aria-expanded=${String(open.has(row.first))} onClick=${() => toggle(row.first)}>${open.has(row.first) ? "fold" : "unfold"}</button> ↻ steps ${row.first} to ${row.last}: ${row.about}</td>`;
     const step = look.steps[row.number - 1];
     return look.lanes.map((name, lane) => html`<td key=${name}>${lane === step.lane && html`<${Step} step=${step} />`}</td>`);
   };
   return html`<section class="lanes-pane" aria-label="The run, a lane for each agent">
     <input type="search" placeholder="find in the steps" aria-label="find in the steps; Enter goes on" onInput=${(event) => setWish(event.currentTarget.value.trim().toLowerCase())} onKeyDown=${seek} />
     <output class="quiet">${wish ? `${hits.length} found` : ""}</output>
-    <div class="scroll" ref=${pane} tabindex="0"><table style=${{ minWidth: `${5 + 11 * look.lanes.length}em` }}>
-      <thead><tr><th scope="col">c</th>${look.lanes.map((name, lane) => html`<th scope="col" key=${name}>${look.hosts[lane]}</th>`)}</tr></thead>
+    <div class="scroll" ref=${pane} tabindex="0"><table style=${{ minWidth: `${5 + 9 * look.lanes.length}em` }}>
+      <thead><tr><th scope="col">step</th>${look.lanes.map((name, lane) => html`<th scope="col" key=${name}>${look.hosts[lane]}</th>`)}</tr></thead>
       <tbody>
-        ${begin === 0 && html`<tr aria-current=${look.at === 0 ? "step" : null} onClick=${() => go(0)}><th scope="row"><button type="button">c0</button></th>${look.lanes.map((name) => html`<td key=${name}></td>`)}</tr>`}
+        ${begin === 0 && html`<tr aria-current=${look.at === 0 ? "step" : null} onClick=${() => go(0)}><th scope="row"><button type="button">0</button></th>${look.lanes.map((name) => html`<td key=${name}></td>`)}</tr>`}
         ${begin > 0 && html`<tr><td class="several" colspan=${look.lanes.length + 1}>⋯ ${counted(begin, "row")} before</td></tr>`}
         ${shown.map((row) => html`<tr key=${row.number ?? `f${row.first}`} data-step=${row.number} ...${gapOf(lapses[row.number - 1] ?? 0)}
           class=${[found.has(row.number) ? "match" : "", look.steps[row.number - 1]?.cause ? "guilty" : "", lapses[row.number - 1] > 0 ? "later" : ""].join(" ")}
           aria-current=${row === rows[current] ? "step" : null} onClick=${(event) => row.number && !event.target.closest("td button") && go(row.number)}>
-          <th scope="row" data-lapse=${lapseWords(lapses[row.number - 1])}>${row.number && html`<button type="button">c${row.number}</button><small>${look.steps[row.number - 1].date ?? ""}</small>`}</th>${cell(row)}</tr>`)}
+          <th scope="row" data-lapse=${lapseWords(lapses[row.number - 1])}>${row.number && html`<button type="button">${row.number}</button><small>${look.steps[row.number - 1].date ?? ""}</small>`}</th>${cell(row)}</tr>`)}
         ${begin + MOST_ROWS < rows.length && html`<tr><td class="several" colspan=${look.lanes.length + 1}>⋯ ${counted(rows.length - begin - MOST_ROWS, "row")} after</td></tr>`}
       </tbody></table>${look.end && html`<p class="loop"><button type="button" onClick=${() => go(look.loop)}>${look.end}</button></p>`}</div>
   </section>`;
@@ -253,8 +256,8 @@ const lapsesOf = ({ steps }) => steps.map(({ at }, n) => (at ?? 0) - (n > 0 ? st
 const lapseWords = (lapse = 0) => (lapse < 120_000 ? `+ ${Math.round(lapse / 100) / 10} s` : `+ ${Math.round(lapse / 6000) / 10} min`);
 
 const Step = ({ step }) => html`<div class=${`step ${step.sort}`} title=${step.label}>
-  ${(step.role || step.cause) && html`<strong class="role">${step.role ?? "cause"}</strong>`}<b>${step.rule}</b>
-  <div>${step.words}</div>
+  ${(step.role || step.cause) && html`<strong class="role">${step.role ?? "cause"}</strong>`}
+  <div>${step.words} <small class="quiet">${step.rule}</small></div>
   ${step.changes.length > 0 && html`<ul>${step.changes.map(([part, text], n) => html`<li key=${n}><span class="part">${part}</span> ${text}</li>`)}</ul>`}</div>`;
 
 /** The agents and the pending requests; new ones are marked. */

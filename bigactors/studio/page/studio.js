@@ -29,7 +29,7 @@ class Studio {
   chosen = new Watched(null);
   /** The verdicts on the newest text, or on one before while it is checked: `{state, report, refused}`. */
   verdicts = new Watched({ state: "none" });
-  /** The simulated flight: `{state, link}`. */
+  /** The simulated flight: `{state, link}`, at its end `{state, recording}`. */
   flight = new Watched({ state: "none" });
   /** What the explorer is to show: `{run, at}`, the steps of a run, or `{trace}`, the run of a verdict; null before a text. */
   wanted = new Watched(null);
@@ -67,6 +67,7 @@ class Studio {
       saved: ({ digest }) => this.#saved(digest),
       changed: (frame) => this.#changed(frame),
       verdicts: (frame) => this.#judged(frame),
+      flown: (frame) => this.flight.set({ state: "flown", ...frame }),
       error: ({ message }) => this.problem.set(message),
     });
     addEventListener("beforeunload", (event) => this.unsaved.value && event.preventDefault());
@@ -309,12 +310,21 @@ function Top({ app }) {
   </header>`;
 }
 
+function whyNotFlown(state, report, unsaved) {
+  if (state === "refused") return "Fly: mend the mistakes of the text first.";
+  if (state === "done" && report.exit_code !== 0) return "Fly: everything has to hold first.";
+  if (unsaved) return "Fly: save the text first.";
+  return state === "done" ? "" : "Fly: the verdicts are awaited.";
+}
+
 /** The way to a simulated flight: only of a saved text of which everything holds. */
 function Flight({ app, unsaved }) {
   const { state, report } = useWatched(app.verdicts);
   const flight = useWatched(app.flight);
-  const why = unsaved ? "Save the text first: the file is flown." : state !== "done" ? "The verdicts on this text are awaited." : report.exit_code !== 0 ? "Only a mission of which everything holds is flown." : "";
+  const why = whyNotFlown(state, report, unsaved);
   return html`${flight.state === "flying" && html`<a href=${flight.link} target="_blank" rel="noreferrer">Open the console of the flight</a>`}
+    ${flight.state === "flown" && html`<span class="quiet" role="status">The flight has ended: Open a run takes ${flight.recording}</span>`}
+    <span class="quiet unflown">${why}</span>
     <button type="button" class="fly" disabled=${why !== "" || flight.state === "starting"} title=${why || "with simulated vehicles, ten times as fast, in the operator's console"} onClick=${app.fly}>${flight.state === "starting" ? "Starting …" : "Fly"}</button>`;
 }
 
@@ -334,13 +344,13 @@ function Trouble({ app }) {
 }
 
 /** How a mission begins that has no file yet. */
-function Begin({ app, name, source, shipped }) {
+function Begin({ app, name, source, folder, shipped }) {
   const begin = (event) => {
     event.preventDefault();
     const given = new FormData(event.target);
     app.begin(given.get("name"), given.get("source"));
   };
-  return html`<form class="begin" onSubmit=${begin}>
+  return html`<div role="main"><form class="begin" onSubmit=${begin}>
     <h2>A new mission</h2>
     <label>Name <${Field} name="name" value=${name || source} required=${true} maxlength="100" placeholder="patrol" /></label>
     <label>Begin with <select name="source">
@@ -348,8 +358,8 @@ function Begin({ app, name, source, shipped }) {
       ${shipped.map((each) => html`<option key=${each} value=${each} selected=${each === source}>${each}, which ships</option>`)}
     </select></label>
     <button type="submit">Begin</button>
-    <p class="quiet">The file NAME.mission is written into the folder in which the program was started. To open another file: bigactors studio FILE.</p>
-  </form>`;
+    <p class="quiet">NAME.mission is written into ${folder}. To open another file: bigactors studio FILE.</p>
+  </form></div>`;
 }
 
 /** The editor's element, which preact draws once. */

@@ -1,13 +1,13 @@
 /** The page of one trace: the explorer over a run inside the file, beside its map and its bigraph. */
 import { html, render, useEffect, useLayoutEffect, useRef, useState } from "/parts/ui.js";
 import { Drawing, picture } from "/parts/bigraph.js";
-import { Explorer } from "/studio/explorer.js";
+import { Explorer, isGuilty } from "/studio/explorer.js";
 
 const data = JSON.parse(document.getElementById("run").textContent);
-const causes = new Map(data.causes.map(({ step, text }) => [step, text]));
+const causes = new Set(data.causes.flatMap(({ step, after }) => (after ? [] : [step])));
 /** The date of a step: as the mission's clock has it, else in seconds since the first step. */
 const dateOf = (n) => data.dates[n] ?? (data.moments.length ? `${(data.moments[n] / 1000).toFixed(1)} s` : "");
-const steps = data.steps.map((deed, n) => ({ ...data.deeds[deed], date: dateOf(n), at: data.moments[n], role: data.roles[n + 1], cause: causes.get(n + 1) }));
+const steps = data.steps.map((deed, n) => ({ ...data.deeds[deed], date: dateOf(n), at: data.moments[n], role: data.roles[n + 1], cause: causes.has(n + 1) }));
 const NOWHERE = { parts: null, values: [], pictures: [], text: "", places: "" };
 
 /** Answer as an exploration does. */
@@ -35,12 +35,10 @@ function Page() {
   const [logical, physical, legend] = (look?.pictures ?? []).map((number) => data.pictures[number] ?? null);
   const missing = look && (!logical || !physical) && `${look.parts ? "This configuration is not drawn" : "This configuration is not"} in this file: bigactors show --step ${look.at}, with the same --trace, has it.`;
   return html`<${Explorer} ask=${ask} state=${state} onLook=${onLook} keys=${document} />
-    <section class=${`stage ${look?.steps[look.at - 1]?.cause ? "guilty" : ""}`} aria-label="One configuration">
+    <section class=${`stage ${look && isGuilty(look) ? "guilty" : ""}`} aria-label="One configuration">
       ${missing && html`<p class="quiet">${missing}</p>`}
-      <h2>P <small>the physical model: reality</small></h2>
-      <${Drawing} svg=${physical} text=${look?.places} called="The map" caption=${() => ""} lettering=${7.5} />
-      <h2>L <small>the logical model: beliefs</small></h2>
-      <${Drawing} svg=${logical} text=${look?.text} called="The bigraph" caption=${() => ""} lettering=${8.6} />
+      <${Drawing} svg=${physical} text=${look?.places} called="The map" caption=${() => html`<b>P</b> the physical model: reality`} lettering=${7.5} />
+      <${Drawing} svg=${logical} text=${look?.text} called="The bigraph" caption=${() => html`<b>L</b> the logical model: beliefs`} lettering=${8.6} />
       <${Legend} svg=${legend} />
     </section>`;
 }

@@ -74,12 +74,12 @@ def test_an_author_walks_into_a_race_is_told_its_causes_and_comes_back_by_the_ad
     expect(page, ".choices h2").to_have_text("a")
     page.get_by_label("go to where this is true").fill("uav0 in gate0 and uav1 in gate0")
     page.get_by_role("button", name="Go to where").click()
-    expect(page, ".story").to_contain_text("looks into gate0, and sees nobody at c")
+    expect(page, ".story").to_contain_text("looks into gate0, and sees nobody at step")
     expect(page, ".values .bad").to_contain_text("race_freedom")
     assert page.locator(".step .role").all_text_contents() == ["sensed", "changed", "acted"]
     look = page.evaluate("window.look")
     again = opened("look_before_entry_racy", run=look["run"], at=look["at"])
-    expect(again, ".controls output").to_have_text(f"c{look['at']} of c{look['length']}")
+    expect(again, ".controls output").to_have_text(f"step {look['at']} of {look['length']}")
     assert again.evaluate("window.look.view.bigraph.svg") == look["view"]["bigraph"]["svg"]
 
 
@@ -90,9 +90,9 @@ def test_steps_are_taken_back_and_branched_off_by_keys_and_buttons(opened):
         expect(page, ".lanes-pane tr[aria-current]").to_contain_text(name)
     page.locator(".explorer .controls button").first.focus()
     page.keyboard.press("ArrowLeft")
-    expect(page, ".controls output").to_have_text("c1 of c2")
+    expect(page, ".controls output").to_have_text("step 1 of 2")
     page.get_by_role("button", name="a on uav0 looks into gate0").click()
-    expect(page, ".controls output").to_have_text("c2 of c2")
+    expect(page, ".controls output").to_have_text("step 2 of 2")
     assert page.evaluate("window.look.run") == "0.0"
 
 
@@ -101,7 +101,7 @@ def test_with_times_the_moment_of_a_step_is_chosen_and_the_saved_trace_replays(o
     expect(page, ".choices .interval").to_have_text("0:00 to 0:10")
     page.get_by_label("seconds at which: eye").fill("10")
     page.get_by_role("button", name="eye on uav0 asks").click()
-    expect(page, ".controls output").to_have_text("c1 of c1 · 0:10")
+    expect(page, ".controls output").to_have_text("step 1 of 1 · 0:10")
     page.get_by_role("tab", name="Graph").click()
     expect(page, ".graph output").to_contain_text(", each step as early as it may be")
     with page.expect_download() as saved:

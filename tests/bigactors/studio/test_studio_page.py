@@ -7,17 +7,28 @@ import time
 from contextlib import contextmanager
 
 import pytest
-from browsers import DESK, PATIENCE, Watch, chromium, overflow, playwright, says
+from browsers import (
+    DESK,
+    PATIENCE,
+    PHONE,
+    TABLET,
+    Watch,
+    chromium,
+    faults,
+    overflow,
+    playwright,
+    says,
+    spilled,
+)
 from threaded import loop_beside
 
 from adapters.console.access import Access
-from adapters.console.console_server import PAGE, Site, listening
+from adapters.console.console_server import Site, listening
 from bigactors.studio.studio_server import StudioService, lacks_parts
 from checker import check, to_json
 from semantics.state.setting import Control, Scheduler
 from specs.elaboration import read_mission
 
-AXE = PAGE / "node_modules" / "axe-core" / "axe.min.js"
 MISSION = """\
 mission patrol
 signature {
@@ -129,6 +140,171 @@ def put_cursor(page, words, behind=True):
           studio.editor.view.focus();
         }""",
         [words, behind],
+    )
+
+
+def look_at(page, name):
+    """Look at a screen in three sizes: nothing is cut at its side, and axe finds no fault."""
+    for size in (TABLET, PHONE, DESK):
+        page.set_viewport_size(size)
+        page.wait_for_timeout(200)  # a map follows its frame
+        picture(page, f"{name}-{size['width']}")
+        assert spilled(page) == [], (name, size)
+        assert overflow(page) == 0, (name, size)
+        if size is not TABLET:
+            assert faults(page) == [], (name, size)
+
+
+def replace(page, words, other):
+    """Write other words over those that are selected, as a person does."""
+    put_cursor(page, words)
+    page.evaluate(
+        """(length) => {
+          const { head } = studio.editor.view.state.selection.main;
+          studio.editor.view.dispatch({ selection: { anchor: head - length, head } });
+        }""",
+        len(words),
+    )
+    page.keyboard.type(other)
+    assert other in text_of(page)
+
+
+def drag(page, handle, to):
+    """Drag a handle of the map to a point of it; wait until the text and the handles have followed."""
+    shapes = "JSON.stringify(studio.shapes.value)"
+    before = page.evaluate(shapes)
+    box, there = page.locator(handle).bounding_box(), page.locator("#map").bounding_box()
+    page.mouse.move(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
+    page.mouse.down()
+    page.mouse.move(there["x"] + to[0], there["y"] + to[1], steps=5)
+    page.mouse.up()
+    until(page, f"{shapes} !== {json.dumps(before)}")
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("theme", ["light", "dark"])
+def test_an_author_comes_from_an_empty_file_to_a_flight(opened, tmp_path, theme):
+    page = opened("patrol.mission", "\n", theme=theme)
+    shows(page, "form.begin")
+    says(page, ".begin p", re.compile(rf"NAME.mission is written into {re.escape(str(tmp_path))}\..*"))
+    look_at(page, f"1-begin-{theme}")
+    page.click("form button")
+    shows(page, ".verdicts .verdict-holds")
+    shows(page, ".bigraph svg")
+    look_at(page, f"2-template-{theme}")
+    mends_a_mistake(page, theme)
+    draws_a_place(page, theme)
+    breaks_a_property_and_mends_it(page, theme)
+    explores(page, theme)
+    flies(page, theme)
+
+
+def mends_a_mistake(page, theme):
+    replace(page, "MOVE_HOST_TO bay0", "MOVE_HOST_TO bayy0")
+    says(page, ".verdicts > [role=status]", "Not checked: the text has mistakes.")
+    says(page, ".explorer .problem", "the text has mistakes: this is still the text before them")
+    says(page, ".unflown", "Fly: mend the mistakes of the text first.")
+    look_at(page, f"3-mistake-{theme}")
+    page.hover(".cm-lintRange-error")
+    page.click(".cm-tooltip-hover .cm-diagnosticAction >> text=Write 'bay0'")
+    all_holds(page)
+
+
+def all_holds(page):
+    until(page, "studio.verdicts.value.state === 'done' && studio.verdicts.value.report.exit_code === 0")
+
+
+def draws_a_place(page, theme):
+    page.click("text=Draw")
+    page.select_option("[aria-label=kind]", "Location")
+    page.click("text=Add")
+    says(page, ".chosen-name", "location0 ×")
+    x, y = page.evaluate("studio.map.pixelOf([37.13, -8.584])")
+    drag(page, ".handle-move", (x, y))
+    drag(page, ".handle-radius", (x + 9, y))
+    all_holds(page)
+    look_at(page, f"4-drawn-{theme}")
+    page.click("text=Draw")
+
+
+def breaks_a_property_and_mends_it(page, theme):
+    replace(page, "MOVE_HOST_TO bay0", "MOVE_HOST_TO location0")
+    shows(page, ".verdicts .verdict-violated")
+    says(page, ".unflown", "Fly: everything has to hold first.")
+    put_cursor(page, "reachable")
+    look_at(page, f"5-violated-{theme}")
+    page.click(".cm-margin .sign-violated")
+    says(page, ".story li >> nth=0", "uav0 moves from field0 to location0, as pilot wants at step 2")
+    says(page, ".story li >> nth=1", "not true here: uav0 in field0, uav0 in bay0 after step 2")
+    until(page, "studio.store.section('entities').get('uav0').believed === 'location0'")
+    look_at(page, f"6-run-{theme}")
+    replace(page, "uav0 in field0 or uav0 in bay0", "uav0 in field0 or uav0 in location0")
+    replace(page, "actually uav0 in bay0 and", "actually uav0 in location0 and")
+    all_holds(page)
+    assert page.locator(".verdict-violated").count() == 0
+
+
+def explores(page, theme):
+    page.click(".controls [aria-label^=first]")
+    says(page, ".caption", "the beginning")
+    for steps in (1, 2):
+        page.click(".choices button >> text=pilot on uav0" if steps == 1 else ".choices button >> nth=0")
+        until(page, f"studio.shown.value.at === {steps}")
+    page.fill("[aria-label='go to where this is true']", "not actually boat0 in bay0")
+    page.click("text=Go to where")
+    until(page, "studio.store.section('entities').get('boat0').actual !== 'bay0'")
+    page.get_by_role("tab", name="Graph").click()
+    shows(page, ".graph .node")
+    look_at(page, f"7-explored-{theme}")
+
+
+def flies(page, theme):
+    says(page, ".unflown", "Fly: save the text first.")
+    page.keyboard.press("Control+s")
+    says(page, ".top [role=status]", "saved")
+    page.click("button.fly")
+    shows(page, ".top a")
+    page.context.route(lambda url: not url.startswith("http://127.0.0.1:"), lambda route: route.abort())
+    with page.context.expect_page() as found:
+        page.click(".top a")
+    console, watch = found.value, Watch()
+    watch.over(console, "http://127.0.0.1:")
+    console.fill(".who-asks input", "Ana")
+    console.get_by_role("button", name="Act as Ana").click()
+    says(console, "h1", "patrol.mission")
+    look_at(console, f"8-before-the-start-{theme}")
+    start = console.get_by_role("button", name="Start the run")
+    start.focus()
+    console.keyboard.down("Enter")
+    start.wait_for(state="detached", timeout=PATIENCE)
+    console.keyboard.up("Enter")
+    shows(console, ".card >> text=under way to location0")
+    look_at(console, f"9-under-way-{theme}")
+    expect(console, ".badge.ended").to_be_visible(timeout=4 * PATIENCE)
+    look_at(console, f"10-ended-{theme}")
+    console.close()
+    watch.forgive("net::ERR_CONNECTION")
+    watch.saw_nothing()
+    says(
+        page, ".top [role=status] >> nth=1", re.compile(r"The flight has ended: Open a run takes .*run\.mcap")
+    )
+    assert page.locator(".top a").count() == 0
+    look_at(page, f"11-after-the-flight-{theme}")
+
+
+def test_what_a_flight_refuses_is_said_with_what_to_do(opened):
+    somewhere = "actually uav0 in west0 or actually uav0 in east0"
+    page = opened(
+        "patrol.mission", MISSION.replace("  reachable", f'  invariant "somewhere": {somewhere}\n  reachable')
+    )
+    shows(page, ".verdicts .verdict-holds")
+    page.click("button.fly")
+    says(
+        page,
+        ".trouble",
+        "the flight does not begin:\n"
+        f"bigactors: not all holds where a flight takes time: somewhere: not true here: {somewhere}\n"
+        "  hint: write the line control timed into the text: Show how then shows the run ×",
     )
 
 
@@ -299,17 +475,17 @@ def test_a_run_from_a_file_is_shown_left_and_there_after_a_reload_and_a_change_o
     data = to_json(trace, "m", "d") | {"scheduler": "fcfs", "control": "timed"}
     (tmp_path / "trace.json").write_text(json.dumps(data), encoding="utf-8")
     page = opened("patrol.mission", MISSION, run=tmp_path / "trace.json")
-    says(page, ".explorer .controls output", f"c{len(trace)} of c{len(trace)}")
+    says(page, ".explorer .controls output", f"step {len(trace)} of {len(trace)}")
     page.click("text=←")
     page.click(".choices button >> nth=0")
     until(page, f"studio.shown.value.run === '~{len(trace) - 1}.0'")
     page.reload()
     until(page, f"studio.shown.value.run === '~{len(trace) - 1}.0'")
-    says(page, ".explorer .controls output", f"c{len(trace)} of c{len(trace)}")
+    says(page, ".explorer .controls output", f"step {len(trace)} of {len(trace)}")
     put_cursor(page, "mission patrol")
     page.keyboard.type("_2")
     shows(page, ".verdicts .verdict-holds")
-    says(page, ".explorer .controls output", f"c{len(trace)} of c{len(trace)}")
+    says(page, ".explorer .controls output", f"step {len(trace)} of {len(trace)}")
     page.set_input_files(".wishes input[type=file]", tmp_path / "patrol.mission")
     shows(page, ".explorer .problem")
     page.set_input_files(".wishes input[type=file]", tmp_path / "trace.json")
@@ -352,17 +528,13 @@ def test_a_file_dropped_on_the_map_brings_its_places_and_another_is_refused(open
 
 @pytest.mark.parametrize("theme", ["light", "dark"])
 def test_axe_finds_no_fault_in_the_studio(opened, theme):
-    if not AXE.exists():
-        pytest.skip("axe-core is not there: `make parts` fetches it")
     page = opened("patrol.mission", MISSION, theme=theme)
     shows(page, ".bigraph svg")
     shows(page, ".verdicts .verdict-holds")
     page.click("text=Draw")
     put_cursor(page, "  east")
     shows(page, ".handle-radius")
-    page.evaluate(f"{AXE.read_text(encoding='utf-8')};0")
-    found = page.evaluate("axe.run(document, { resultTypes: ['violations'] })")
-    assert [(each["id"], [node["html"] for node in each["nodes"]]) for each in found["violations"]] == []
+    assert faults(page) == []
 
 
 def playwright_pattern(words):

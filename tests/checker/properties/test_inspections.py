@@ -50,17 +50,17 @@ CONSISTENCY = {
     "where what moves is elsewhere": (
         ASKS + "environment { uav0 drifts among south0 }",
         {"inconsistent": 2},
-        "uav0: L has it in north0, P shows it in south0",
+        "uav0: believed in north0, actually in south0",
     ),
     "where what moves has vanished": (
         ASKS + "environment { uav0 vanishes }",
         {"inconsistent": 2},
-        "uav0: L has it in north0, P does not show it",
+        "uav0: believed in north0, actually gone",
     ),
     "where a link is down": (
         HANDS + "environment { uav0 leaves control:gcs0 }",
         {"inconsistent": 2},
-        "uav0: L has it on control:gcs0, mesh, P on mesh",
+        "uav0: believed on control:gcs0, mesh, actually on mesh",
     ),
     "where the target has vanished": (ASKS + "environment { gate0 vanishes }", {"inconsistent": 2}, ""),
     "where nobody looked at what is believed": (ASKS + BELIEVES, {"inconsistent": 1}, ""),
@@ -85,7 +85,7 @@ UNMATCHED = {
         "MOVE uav1 TO gate0",
         "gcs0 is on control:gcs0, uav1 is on control:gcs1: on none together",
     ),
-    "a place on the carrier": ("uav0", "PUT drifter0 IN gate0", "drifter0 is not in uav0: L has it in vessel0"),
+    "a place on the carrier": ("uav0", "PUT drifter0 IN gate0", "drifter0 is not in uav0: it is believed in vessel0"),
 }  # fmt: skip
 
 
@@ -215,7 +215,7 @@ SENDS = 'send("go", b)'
         ),
         (
             agents(a=("uav0", SENDS), b=("uav1", "")) + "believes { uav1 unlinked }",
-            ('SND(a, b, "go"): their hosts, uav0 and uav1, share no link in L: P has both on mesh',),
+            ('SND(a, b, "go"): their hosts, uav0 and uav1, share no link in belief: both are actually on mesh',),
         ),
         (
             agents(a=("gcs0", "migrate(uav1)")),

@@ -123,7 +123,7 @@ def test_a_date_is_a_whole_number_of_ticks(flight, late, at):
 def test_a_vehicle_that_never_left_is_full_and_then_lasts_so_long(flight):
     endurance = Property(PropertyKind.ENDURANCE, "endurance")
     found = decided(flight, endurance).verdicts["endurance"]
-    assert found.violations[0].message == "uav0 lasts 6 min, and is unrestored for longer at 7:00"
+    assert found.violations[0].message == "uav0 lasts 6 min, and is still not restored at 7:00"
     exactly = MINUTES.endurances[0][1]
     places = (*exactly.places, "south0")
     home = with_timing(load(FLIGHT).initial, replaced(endurances=(("uav0", Endurance(7, places, 20)),)))
