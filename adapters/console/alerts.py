@@ -111,7 +111,9 @@ def _consequence(facts: Facts, alert: Json) -> str:
 
 
 def _of_vehicle(facts: Facts, kind: str, name: str) -> str:
-    """Return the consequence of a lost link or a take-over, as it is now."""
+    """Return the consequence of a lost link or a take-over, as it is now; empty after the run."""
+    if facts.ended is not None:
+        return ""
     if kind == "lost link":
         lost = name in facts.links and facts.links[name].lost
         return "its autopilot decides, and orders reach it once it is heard" if lost else "it is heard again"
