@@ -78,8 +78,8 @@ def _astray(c: Configuration, request: CTR) -> str:
     )
 
 
-def _named(place: Name) -> str:
-    return "none of the places" if place == REGION else place
+def _named(place: Name | None) -> str:
+    return "none of the places" if place is None or place == REGION else place
 
 
 def _controlled(turning: Turning, request: CTR, way: Realisation, found: tuple[Transition, ...]) -> Service:
