@@ -477,6 +477,7 @@ class Presence:
         reached: Whether it is reached; None while that is not known yet.
         heard: Time of its last answer; None before the first.
         agrees: Whether its L is the same as ours; None while that is not known.
+        begun: Whether its run has begun; None while that is not known.
     """
 
     station: str
@@ -484,6 +485,7 @@ class Presence:
     reached: bool | None
     heard: float | None
     agrees: bool | None = None
+    begun: bool | None = None
 
 
 Seen = Status | StatusText | Presence

@@ -107,7 +107,20 @@ def _consequence(facts: Facts, alert: Json) -> str:
         return whole
     if fallback in STOPPING:
         return f"its vehicles were commanded to {STOPPING[fallback]}; {grounded(alert['about'])}"
-    return "the mission goes on" if fallback else ""
+    return "the mission goes on" if fallback else _of_vehicle(facts, alert["kind"], alert["about"])
+
+
+def _of_vehicle(facts: Facts, kind: str, name: str) -> str:
+    """Return the consequence of a lost link or a take-over, as it is now; empty after the run."""
+    if facts.ended is not None:
+        return ""
+    if kind == "lost link":
+        lost = name in facts.links and facts.links[name].lost
+        return "its autopilot decides, and orders reach it once it is heard" if lost else "it is heard again"
+    if kind == "taken over":
+        away = name in facts.taken or name in facts.standing_orders
+        return "the mission does not command it until it is given back" if away else "it was given back"
+    return ""
 
 
 def _alert(time: float, data: Any) -> dict[str, Json]:

@@ -41,6 +41,9 @@ UNKNOWN_NOW: Final = "unknown"
 OLD: Final = 5.0
 """Seconds of silence after which a vehicle is to be watched."""
 
+SETS_OUT: Final = 15.0
+"""Seconds within which a vehicle is armed for its flight."""
+
 LOW: Final = 25
 """Percent of charge below which a battery is low."""
 
@@ -242,15 +245,23 @@ def _reasons(
         yield Reason(WRONG if standing.refusal else WATCHED, standing.reason)
     yield from _of_assumptions(facts, name)
     for station in facts.authority.get(name, UNTOLD).stations:
-        if facts.stations.get(station, {}).get("reached") is False:
+        known = facts.stations.get(station, {})
+        if known.get("reached") is False:
             yield Reason(WRONG, f"its station {station} is not reached")
+        elif known.get("begun") is False:
+            yield Reason(WRONG, f"its station {station} has not started: nobody commands it")
     away = name in facts.taken or name in facts.standing_orders
     yield from _of_request(asked, now, idle=away)
+    yield from _of_blocking(facts, asked)
     yield from _of_falling_back(facts, asked)
+    yield from _of_preflight(facts, name)
+    if not away:
+        yield from _of_setting_out(facts, name, now)
     if asked is None and not away and facts.status.get(name, {}).get("armed"):
-        yield from _of_idleness(facts)
+        yield from _of_idleness(facts, name)
     for order in (facts.orders.get(name), facts.hand_overs.get(name)):
-        if order is not None and order.state == "refused" and not _is_standing(facts, name, order):
+        told = order is not None and (_is_standing(facts, name, order) or order.why == facts.taken.get(name))
+        if order is not None and order.state == "refused" and not told:
             yield Reason(WRONG, f"it refuses {order.command}{f': {order.why}' if order.why else ''}")
     battery = facts.status.get(name, {}).get("battery")
     if battery is not None and battery["percent"] is not None and battery["percent"] < LOW:
@@ -299,6 +310,36 @@ def _of_request(asked: Asked | None, now: float, *, idle: bool) -> Iterator[Reas
         yield Reason(WATCHED, f"the time limit of its request, {duration_text(limit)}, still runs{then}")
 
 
+def _of_blocking(facts: Facts, asked: Asked | None) -> Iterator[Reason]:
+    """Yield that the request cannot be served, as the run has found."""
+    if asked is None:
+        return
+    request = text(str(asked.waiting.request))
+    for alert in facts.alerts.values():
+        if alert["kind"] == "blocked" and alert["message"].startswith(request):
+            yield Reason(WRONG, f"its request{alert['message'].removeprefix(request)}")
+            return
+
+
+def _of_preflight(facts: Facts, name: Name) -> Iterator[Reason]:
+    """Yield, before the start, that a vehicle refuses to arm."""
+    if facts.preflight.get("state") == "begun":
+        return
+    for item in facts.preflight.get("items", ()):
+        if item.get("vehicle") == name and item.get("refuses"):
+            yield Reason(WATCHED, f"it refuses to arm: {'; '.join(item['refuses'])}")
+
+
+def _of_setting_out(facts: Facts, name: Name, now: float) -> Iterator[Reason]:
+    """Yield that a vehicle is still not armed for its flight, with its newest text, which may say why."""
+    order, said = facts.orders.get(name), facts.words.get(name)
+    if order is None or not order.to or order.state != "sent" or now - order.since < SETS_OUT:
+        return
+    if facts.status.get(name, {}).get("armed") is False:
+        why = f": {said['text']}" if said else ""
+        yield Reason(WATCHED, f"it has not set out to {order.to}{why}")
+
+
 def _of_falling_back(facts: Facts, asked: Asked | None) -> Iterator[Reason]:
     """Yield that the mission will not command a vehicle again, even after a give-back."""
     if whole := fallen_back(facts):
@@ -307,17 +348,24 @@ def _of_falling_back(facts: Facts, asked: Asked | None) -> Iterator[Reason]:
         yield Reason(WRONG, grounded(asked.waiting.request.agent))
 
 
-def _of_idleness(facts: Facts) -> Iterator[Reason]:
-    """Yield why no request concerns a vehicle: an agent waits, or all agents have ended."""
-    if ALL in facts.stopped:
+def _of_idleness(facts: Facts, name: Name) -> Iterator[Reason]:
+    """Yield why no request concerns a vehicle: an agent waits, its own first, or all agents have ended."""
+    if ALL in facts.stopped or _is_elsewhere(facts, name):
         return
     states = agents(facts)
     if any(each["state"] == "goes on" or each["request"] is not None for each in states.values()):
         return
-    waiting = [
-        f"{name} {each['state']}" for name, each in states.items() if each["state"].startswith("waits")
-    ]
+    own_first = sorted(states.items(), key=lambda each: each[1]["host"] != name)
+    waiting = [f"{agent} {each['state']}" for agent, each in own_first if each["state"].startswith("waits")]
     if waiting:
         yield Reason(WELL, f"it has no request: {waiting[0]}")
     elif states:
         yield Reason(WATCHED, "it will get no more requests: every bigActor of the mission has ended")
+
+
+def _is_elsewhere(facts: Facts, name: Name) -> bool:
+    """Return whether a vehicle obeys another station, whose agents this one does not know."""
+    stations = facts.authority.get(name, UNTOLD).stations
+    return (
+        facts.run is not None and bool(stations and facts.run.station) and facts.run.station not in stations
+    )

@@ -142,7 +142,7 @@ def _mission(data: dict[str, Any], begun: float, here: str) -> dict[str, Json]:
     assert isinstance(verdict, dict)
     properties = verdict.get("properties")
     return {
-        "name": text(data["mission"]),
+        "name": text(data["mission"]).rpartition("/")[2],  # it may be given as a path
         "digest": text(data["digest"]),
         "verified": data.get("verified") is True,
         "verdicts": [_verdict(each) for each in properties[:MOST]] if isinstance(properties, list) else [],

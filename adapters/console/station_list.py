@@ -17,12 +17,9 @@ def take_presence(draft: Facts, _time: float, data: Any) -> None:
     """Take in whether another station of the run is reached."""
     station = text(data.get("station"))
     if draft.run is not None and station in draft.run.stations:
-        reached, agrees = data.get("reached"), data.get("agrees")
-        draft.stations[station] = {
-            "reached": reached if isinstance(reached, bool) else None,
-            "heard": number(data.get("heard")),
-            "agrees": agrees if isinstance(agrees, bool) else None,
-        }
+        truths = {key: data.get(key) for key in ("reached", "agrees", "begun")}
+        known = {key: each if isinstance(each, bool) else None for key, each in truths.items()}
+        draft.stations[station] = {**known, "heard": number(data.get("heard"))}
 
 
 def obeys(draft: Facts, time: float, name: Name, stations: tuple[str, ...]) -> None:
@@ -39,7 +36,7 @@ def stations(facts: Facts, cards: Mapping[str, Json]) -> dict[str, Json]:
     """Return the section `stations`; empty if one station flies alone."""
     if facts.run is None:
         return {}
-    unknown = {"reached": None, "heard": None, "agrees": None}
+    unknown = {"reached": None, "heard": None, "agrees": None, "begun": None}
     return {
         name: {
             "here": name == facts.run.station,

@@ -17,10 +17,10 @@ from semantics.behaviours.process_conversion import next_statement
 from semantics.behaviours.statements import React
 from semantics.bigactor_rules import timeout
 from semantics.control import Realisation, obstacle, realisations
-from semantics.state.configuration import Transition
+from semantics.state.configuration import Configuration, Transition
 from semantics.state.eta import PendingRequest
 from semantics.state.requests import CTR
-from semantics.state.signature import Name
+from semantics.state.signature import REGION, Name
 from semantics.state.station_partition import is_here
 
 Service = tuple[tuple[Transition, ...], bool]
@@ -61,8 +61,25 @@ def _service(turning: Turning, pending: PendingRequest) -> Service:
 def _blocked(turning: Turning, request: CTR) -> None:
     reason = obstacle(turning.c, request)
     if reason is not None:
-        message = f"{request} is {reason.value}; it stays pending"
+        message = f"{request} is {reason.value}{_astray(turning.c, request)}; it stays pending"
         turning.find("blocked", request.agent, message, once=True)
+
+
+def _astray(c: Configuration, request: CTR) -> str:
+    """Return where L and P have the nodes that a control moves, as a suffix; empty if they agree."""
+    logical, physical = c.structure.logical, c.structure.physical
+    moved = [node for node, _ in request.reaction.moves if isinstance(node, str)]
+    known = [node for node in moved if node in logical and node in physical]
+    pairs = [(node, logical.parent(node), physical.abstract_parent(node)) for node in known]
+    return "".join(
+        f": {node} is believed in {_named(believed)} and is in {_named(actual)}"
+        for node, believed, actual in pairs
+        if believed != actual
+    )
+
+
+def _named(place: Name | None) -> str:
+    return "none of the places" if place is None or place == REGION else place
 
 
 def _controlled(turning: Turning, request: CTR, way: Realisation, found: tuple[Transition, ...]) -> Service:

@@ -415,8 +415,9 @@ def _undone(pilot: Pilot, profile: Profile, now: float) -> str:
 
 
 def _taken_over(pilot: Pilot, now: float) -> tuple[Pilot, tuple[Report, ...]]:
-    """End the vehicle's commands: its actions from now on are not ours."""
-    reason = pilot.helm.taken + pilot.known.last_words(now)
+    """End the vehicle's commands: its actions from now on are not ours. The reason begins with its own words."""
+    said = pilot.known.said(now)
+    reason = f"it said {said}; {pilot.helm.taken}" if said else pilot.helm.taken
     pilot = changed(pilot, helm=replace(pilot.helm, taken=reason))
     reports: list[Report] = [TakenOver(pilot.craft.entity, now, reason)]
     for slot in _SLOTS:

@@ -182,8 +182,8 @@ class Telemetry:
         return f"it has no position: {', '.join([*said, *own]) or 'it reports no GPS'}"
 
     def unready(self, now: float) -> tuple[str, ...]:
-        """Return its recent reasons why it cannot be armed."""
-        lately = (text for time, text in self.words if now - time <= MEMORY)
+        """Return its recent reasons why it cannot be armed, each once."""
+        lately = dict.fromkeys(text for time, text in self.words if now - time <= MEMORY)
         return () if self.armed else tuple(text for text in lately if text.startswith(REFUSES_TO_ARM))
 
     @property
@@ -200,10 +200,14 @@ class Telemetry:
         moved = away > HOME_METRES or abs(up) > HOME_RISE
         return f"its home was moved by {away:.0f} m and {up:+.0f} m in height" if moved else ""
 
+    def said(self, now: float) -> str:
+        """Return its recent warnings, or an empty text."""
+        return ", ".join(map(repr, dict.fromkeys(text for time, text in self.words if now - time <= MEMORY)))
+
     def last_words(self, now: float) -> str:
         """Return its recent warnings as a suffix of a reason, or an empty text."""
-        lately = [text for time, text in self.words if now - time <= MEMORY]
-        return f"; its last words: {', '.join(map(repr, dict.fromkeys(lately)))}" if lately else ""
+        said = self.said(now)
+        return f"; its last words: {said}" if said else ""
 
 
 def absorb(known: Telemetry, message: MavlinkMessage, now: float) -> Telemetry:

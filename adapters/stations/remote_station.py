@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 from collections import deque
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from hashlib import sha256
 from typing import Final
 
@@ -78,6 +78,7 @@ class Other:
         met: Time of its last answer, by the run's clock; None before the first.
         compared: Its digest of L and ours, and the time since which they have been these.
         agrees: Whether its L is the same as ours; None while that is not known.
+        begun: Whether its run has begun; None while that is not known.
         shown: The last report of its presence to the run.
         awake: Set if it must be asked at once.
     """
@@ -93,14 +94,15 @@ class Other:
     met: float | None = None
     compared: tuple[str, str, float] = ("", "", 0.0)
     agrees: bool | None = None
+    begun: bool | None = None
     shown: Presence | None = None
     awake: asyncio.Event = field(default_factory=asyncio.Event)
 
     def presence(self, station: str, now: float) -> Presence | None:
-        """Return a report of its presence: at once if its reachability has changed, else seldom; None if not due."""
+        """Return a report of its presence: at once if more than its time has changed, else seldom; None if not due."""
         agrees = self.agrees if self.reached else None
-        found, before = Presence(station, now, self.reached, self.met, agrees), self.shown
-        same = before is not None and (before.reached, before.agrees) == (found.reached, found.agrees)
+        found, before = Presence(station, now, self.reached, self.met, agrees, self.begun), self.shown
+        same = before is not None and replace(found, time=before.time, heard=before.heard) == before
         if same and before is not None and (before.heard == found.heard or now - before.time < SELDOM):
             return None
         self.shown = found

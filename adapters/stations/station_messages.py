@@ -27,6 +27,7 @@ class StationMessage(Struct, frozen=True):
         last: The last number that it has used.
         entries: As plain data, or encoded.
         logical: The digest of its L; empty before its first turn.
+        begun: Whether its run has begun.
     """
 
     mission: str
@@ -36,6 +37,7 @@ class StationMessage(Struct, frozen=True):
     last: Count
     entries: Annotated[Sequence[Any], Meta(max_length=2 * MOST_ENTRIES)]
     logical: Annotated[str, Meta(max_length=64)] = ""
+    begun: bool = True
 
 
 class Question(Struct, frozen=True):

@@ -108,6 +108,9 @@ class Sharing(Watcher):
         digest: The mission's digest: stations with another one are ignored.
         vehicles: The entities that only their own links may report, and whether each obeys a station.
         named: The entities of the mission; of others a limited number of each plugin is shared.
+
+    Attributes:
+        begun: Whether the run has begun.
     """
 
     name = NAME
@@ -142,6 +145,7 @@ class Sharing(Watcher):
         self._introduced = False
         self._logical: LogicalModel | None = None
         self._mute = False
+        self.begun = False
 
     # --- as a plugin
 
@@ -284,7 +288,14 @@ class Sharing(Watcher):
         assert self._world is not None
         return encode(
             StationMessage(
-                self._digest, self._world.now(), after, upto, self._journal.last, entries, self._digest_of_l()
+                self._digest,
+                self._world.now(),
+                after,
+                upto,
+                self._journal.last,
+                entries,
+                self._digest_of_l(),
+                self.begun,
             )
         )
 
@@ -352,6 +363,7 @@ class Sharing(Watcher):
         except ValueError as error:
             self._troubles.note("unreadable message", f"from {station}: {error!s:.200}")
             return None
+        self.others[station].begun = message.begun
         if message.mission != self._digest:
             detail = f"{station} flies another mission, or another version of it: give all the same"
             self._troubles.note("another mission", detail)

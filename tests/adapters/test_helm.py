@@ -224,7 +224,7 @@ def test_what_is_given_back_is_told_the_next_command_though_it_is_in_another_mod
     assert flown.goes_on(GUIDED, 6).pilot.helm.held
 
 
-def test_the_last_words_of_a_vehicle_stand_with_why_it_was_taken_over():
+def test_the_last_words_of_a_vehicle_stand_before_why_it_was_taken_over():
     flown = Flown().goes_on(GUIDED, 2)
     texts = ("EKF3 IMU0 is using GPS", 6), ("Battery 1 is low 29.90V used 12 mAh", 4)
     for text, severity in texts:
@@ -232,7 +232,7 @@ def test_the_last_words_of_a_vehicle_stand_with_why_it_was_taken_over():
         flown.take(pilot.hear(flown.pilot, replace(said, system=1, component=1), flown.now))
     (report,) = flown.goes_on(RTL, 6).of(TakenOver)
     assert report.reason == (
-        "it is in RTL, by itself or by a command from elsewhere; its last words: 'Battery 1 is low 29.90V used 12 mAh'"
+        "it said 'Battery 1 is low 29.90V used 12 mAh'; it is in RTL, by itself or by a command from elsewhere"
     )
 
 

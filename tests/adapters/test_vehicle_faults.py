@@ -44,7 +44,7 @@ async def test_a_vehicle_that_leaves_its_fence_says_so_where_it_is_taken_over():
         f.vehicle.body = replace(f.vehicle.body, latitude=37.05)
         (taken,) = await until(lambda: f.world.of(TakenOver), 30)
         assert taken.reason == (
-            "it is in RTL, by itself or by a command from elsewhere; its last words: 'Polygon fence breached'"
+            "it said 'Polygon fence breached'; it is in RTL, by itself or by a command from elsewhere"
         )
 
 

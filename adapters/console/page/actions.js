@@ -7,7 +7,7 @@ import { LONGEST_NAME } from "./operator_name.js";
 
 export function Actions({ app }) {
   const [sayings, actions, vehicles, agents, mission] = useSections(app.store, ["sayings", "actions", "vehicles", "agents", "mission"], 200);
-  const act = useWatched(app.mayAct);
+  const act = useWatched(app.mayOrder);
   const past = useWatched(app.inPast);
   const why = useWatched(app.whyNot);
   const { role, mode } = useWatched(app.link.welcome) ?? {};

@@ -7,12 +7,22 @@ import { utc } from "./units.js";
 /** The kinds of findings that cause others: a lost link or a take-over also breaks an assumption. */
 const CAUSES = ["lost link", "taken over", "failed"];
 
-/** The alarms, newest first; within one second, those about vehicles first, and among these the causes first. */
-const standing = (alarms, vehicles) => {
+/** Seconds after a cause within which a broken assumption about the same vehicle counts as its effect. */
+const FOLLOWS = 30;
+
+/** The alarms, newest first, a cause before its effects; within one second, those about vehicles first. */
+export function standing(alarms, vehicles) {
+  const all = [...alarms.values()];
+  const follows = (cause) => ({ kind, about, time }) => kind === "broken assumption" && about === cause.about && Math.abs(time - cause.time - FOLLOWS / 2) <= FOLLOWS / 2 + 1;
+  const causes = all.filter(({ kind, about }) => CAUSES.includes(kind) && vehicles.has(about));
+  const times = new Map(causes.map((cause) => [cause, Math.max(cause.time, ...all.filter(follows(cause)).map(({ time }) => time))]));
+  const time = (alarm) => Math.floor(times.get(alarm) ?? alarm.time);
   const rank = ({ kind, about }) => 2 * vehicles.has(about) + CAUSES.includes(kind);
-  return [...alarms]
-    .sort(([, a], [, b]) => Math.floor(b.time) - Math.floor(a.time) || rank(b) - rank(a) || b.time - a.time);
-};
+  return [...alarms].sort(([, a], [, b]) => time(b) - time(a) || rank(b) - rank(a) || b.time - a.time);
+}
+
+/** A finding's message without the name that is before it in the line. */
+const unnamed = ({ message, about }) => (about && message.startsWith(`${about} `) ? message.slice(about.length + 1) : message);
 
 /** The text that an agent waits for an operator's message; null if none waits. */
 function asked(sayings, agents) {
@@ -49,7 +59,7 @@ export function Alert({ app }) {
   const [alerts, alarms, vehicles, sayings, agents, mission] = useSections(app.store, ["alerts", "alarms", "vehicles", "sayings", "agents", "mission", "clock"], 200);
   const past = useWatched(app.inPast);
   const connected = useWatched(app.link.state).state === "open";
-  const act = useWatched(app.mayAct);
+  const act = useWatched(app.mayOrder);
   const open = useWatched(app.listing);
   const wrong = standing(alarms, vehicles);
   const [number, newest] = wrong[0] ?? [];
@@ -60,7 +70,7 @@ export function Alert({ app }) {
   const question = act ? asked(sayings, agents) : null;
   return html`<section class="alerts" aria-label="Alerts">
     <div role="alert" class=${`alert ${newest ? "standing" : ""}`} key="line">
-      ${newest && html`<span class="message" key=${number} title=${newest.message} onClick=${() => app.listing.set(!open)}><span class="cause">${past && html`<span class="now-mark">NOW</span> `}<b>${newest.about ? `${newest.about}: ` : ""}</b>${newest.message}</span>${newest.consequence && html` <span class="consequence"><i aria-hidden="true">→</i> ${newest.consequence}</span>`}</span>`}
+      ${newest && html`<span class="message" key=${number} title=${newest.message} onClick=${() => app.listing.set(!open)}><span class="cause">${past && html`<span class="now-mark">NOW</span> `}<b>${newest.about ? `${newest.about}: ` : ""}</b>${unnamed(newest)}</span>${newest.consequence && html` <span class="consequence"><i aria-hidden="true">→</i> ${newest.consequence}</span>`}</span>`}
     </div>
     ${!newest && html`<span class=${`calm ${broken ? "wrong" : question ? "asked" : ""}`} key="calm">${broken ? `Unknown: ${app.clock.get("ended")}.` : app.clock.atEnd ? endOf(app.clock.get("ended"), welcome?.recording) : connected ? `${question ?? ""}${calm(vehicles, mission.get("fallen_back"))}` : "Unknown: not connected."}</span>`}
     ${all.length > 0 && html`<div class=${`alert-tools ${newest ? "standing" : ""}`} key="tools">

@@ -10,7 +10,7 @@ import { Help, listenForKeys } from "./keys.js";
 import { Link } from "./link.js";
 import { Mission, NotConnected } from "./mission.js";
 import { NoticeList, Notices } from "./notices.js";
-import { OnReturn, Orders } from "./orders.js";
+import { Orders, SideEffects } from "./orders.js";
 import { Preflight } from "./preflight.js";
 import { Sound } from "./sound.js";
 import { Store } from "./store.js";
@@ -24,6 +24,7 @@ import { Who } from "./operator_name.js";
 const CONNECTS = 10_000;
 
 const PAST = "The past is shown: to act, go to the newest moment (L).";
+const NOT_STARTED = "The run has not started: press Start first.";
 
 /** The parameters in the link's fragment; browsers send no fragment, so the token is in no request. */
 const fragment = () => new URLSearchParams(location.hash.slice(1));
@@ -47,6 +48,8 @@ class App {
   tab = new Watched("map");
   hiddenSorts = new Watched(new Set());
   mayAct = new Watched(false);
+  /** Whether it may act, and the run has started: before, the run takes no order, message or note. */
+  mayOrder = new Watched(false);
   past = new Watched(false);
   /** Whether this page could act, if it did not show the past. */
   inPast = new Watched(false);
@@ -76,7 +79,7 @@ class App {
     this.link.state.on(({ state }) => (this.clock.connected = state === "open"));
     this.link.state.on(() => this.#judge());
     this.link.error.on((message) => message && this.tell(message));
-    this.store.on(["clock"], () => this.#judge());
+    this.store.on(["clock", "preflight"], () => this.#judge());
     const off = this.mayAct.on((may) => {
       if (!may) return;
       off();
@@ -126,8 +129,10 @@ class App {
       : this.clock.get("ended") ? "The run has ended: nothing can be done any more."
       : this.clock.get("live") === false ? PAST
       : "";
-    this.whyNot.set(why);
+    const started = !["waits", "ready"].includes(this.store.section("preflight").get("state"));
+    this.whyNot.set(why || (started ? "" : NOT_STARTED));
     this.mayAct.set(why === "");
+    this.mayOrder.set(why === "" && started);
     this.inPast.set(why === PAST);
   }
 
@@ -360,7 +365,7 @@ function Subject({ app }) {
   if (!card) return null;
   return html`<div class=${`subject level-${card.level}`}>
     <p><b class="mark">${app.subject}</b> <${Brief} app=${app} name=${app.subject} card=${card} /></p>
-    <${OnReturn} app=${app} card=${card} />
+    <${SideEffects} app=${app} card=${card} />
     <${Orders} app=${app} name=${app.subject} card=${card} /></div>`;
 }
 

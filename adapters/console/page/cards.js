@@ -3,7 +3,7 @@ import { html, memo, byName, useEffect, useRef, useSections, useWatched } from "
 import { Age, Ticking, say } from "./clock.js";
 import { distance, distanceToArea } from "./map/geodesy.js";
 import { fallbackWords, fateOf, isAstray, moves, orderedWords, orderWords, requestWords, wayOf, whereabouts } from "./wording.js";
-import { OnReturn, Orders, Several } from "./orders.js";
+import { Orders, Several, SideEffects } from "./orders.js";
 import { useStillness } from "./stable_list.js";
 import { angle, age, duration, metres, position, range, speed, system, utc } from "./units.js";
 
@@ -61,7 +61,6 @@ const FleetRow = memo(({ app, name, card, chosen, several, stale }) => {
     else next.delete(name);
     app.several.set(next);
   };
-  const place = whereabouts(card);
   return html`<div class=${`fleet level-${card.level}`} data-row=${name}>
     <div class="row">
       <input type="checkbox" aria-label=${`choose ${name} for an order to several`} checked=${several} onChange=${pick} />
@@ -69,7 +68,7 @@ const FleetRow = memo(({ app, name, card, chosen, several, stale }) => {
       <span class=${`level ${card.level || stale ? "" : "quiet"}`}>${word}</span>
       <${LinkAge} app=${app} link=${card.link} unknown=${word === UNKNOWN} />
       <span><${Battery} battery=${card.battery} /></span>
-      <span class="rest" title=${card.why || place}>${card.why ? html`<b>${card.why}</b>` : place}</span>
+      ${!chosen && html`<span class="rest" title=${card.why}>${card.level > 0 && card.why ? html`<b>${card.why}</b>` : whereabouts(card)}</span>`}
     </div>
     ${chosen && html`<${Card} app=${app} name=${name} card=${card} chosen=${true} stale=${stale} units=${system.value} />`}
   </div>`;
@@ -104,7 +103,7 @@ const Card = memo(({ app, name, card, chosen, stale }) => {
       </h3>
       <${Orders} app=${app} name=${name} card=${card} />
     </header>
-    <${OnReturn} app=${app} card=${card} />
+    <${SideEffects} app=${app} card=${card} />
     ${card.why && html`<p class="why">${card.why}</p>`}
     <dl>
       <dt>Place</dt><dd><${Place} card=${card} /></dd>

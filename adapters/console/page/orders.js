@@ -1,13 +1,23 @@
 /** The buttons Hold, Return and Give back of one vehicle; while the past is shown, a button to now in the same place. */
-import { html, useWatched } from "./ui.js";
+import { html, useSections, useWatched } from "./ui.js";
 import { HeldButton } from "./press.js";
 
+/** The stations that a vehicle obeys, if this one is not among them: the run refuses orders to it. */
+function useOthers(app, { authority = [] }) {
+  const [mission] = useSections(app.store, ["mission"], 500);
+  const station = mission.get("station");
+  return station && !authority.includes(station) ? authority.join(" and ") : "";
+}
+
 /** The first button comes and goes; the others keep their places. */
-export function Orders({ app, name, card: { taken, on_return: onReturn } }) {
-  const act = useWatched(app.mayAct);
+export function Orders({ app, name, card }) {
+  const { taken, on_return: onReturn } = card;
+  const act = useWatched(app.mayOrder);
   const past = useWatched(app.inPast);
+  const others = useOthers(app, card);
   if (past) return html`<div class="orders"><button type="button" class="now" onClick=${app.live}>Go to now (L) to act</button></div>`;
   if (!act) return null;
+  if (others) return html`<div class="orders quiet">obeys ${others}: order it there</div>`;
   const order = (which) => () => app.act({ order: { order: which, vehicle: name } }, { what: which, about: name });
   return html`<div class="orders">
     ${taken && html`<${HeldButton} key="back" label=${`Give back ${name}`} tell=${app.tell} act=${() => app.act({ give_back: { vehicle: name } }, { what: "give back", about: name })}>Give back<//>`}
@@ -22,7 +32,7 @@ const told = (names) => (names.length > MOST_LISTED ? `${names.length} vehicles`
 
 /** The orders to the vehicles that were chosen in the table: one order, confirmed by each vehicle. */
 export function Several({ app, names, all, cards }) {
-  const act = useWatched(app.mayAct);
+  const act = useWatched(app.mayOrder);
   if (!act) return null;
   const one = names.length === 1;
   const about = told(names);
@@ -41,8 +51,10 @@ export function Several({ app, names, all, cards }) {
   </div>`;
 }
 
-/** The side effect of an order to return, shown before the button is pressed. */
-export function OnReturn({ app, card }) {
-  const act = useWatched(app.mayAct);
-  return act && card.on_return ? html`<p class="on-return"><b>Return</b> ${card.on_return}</p>` : null;
+/** The side effects of orders, shown before a button is pressed. */
+export function SideEffects({ app, card: { taken, ordered, on_return: onReturn }, card }) {
+  const act = useWatched(app.mayOrder);
+  if (useOthers(app, card) || !act) return null;
+  return html`${taken && !ordered && html`<p class="on-return">Each order overrules the pilot or the fail-safe that has it.</p>`}
+    ${onReturn && html`<p class="on-return"><b>Return</b> ${onReturn}</p>`}`;
 }

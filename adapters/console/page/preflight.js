@@ -17,7 +17,7 @@ export function Preflight({ app }) {
     <div class="head"><h2 id="preflight-title">Before the start: nothing is commanded yet</h2>
     ${act ? html`<${HeldButton} kind="start" label="Start the run" tell=${app.tell} disabled=${state !== "ready"} act=${start}>Start<//>` : html`<p class="quiet">Somebody who may act has to press Start.</p>`}</div>
     <ul>${items.filter(({ vehicle }) => !vehicle).map((item) => html`<${Check} key=${item.what} ...${item} />`)}
-      ${others.map(([name, { reached }]) => html`<${Check} key=${`station ${name}`} what=${`station ${name} is reached`} done=${reached === true} />`)}</ul>
+      ${others.map(([name, { reached, begun }]) => html`<${Check} key=${`station ${name}`} what=${`station ${name} is reached`} done=${reached === true} detail=${reached && begun === false ? "it has not started yet" : ""} />`)}</ul>
     ${rows.length > 0 && html`<div class="rows"><table><thead><tr>${["Vehicle", "Heard", "Position", "Mode", "Battery", "Fence read back", "Refuses to arm"].map((title) => html`<th scope="col" key=${title}>${title}</th>`)}</tr></thead>
       <tbody>${rows.map((item) => html`<${Row} key=${item.vehicle} app=${app} item=${item} card=${vehicles.get(item.vehicle)} at=${entities.get(item.vehicle)?.at} />`)}</tbody></table></div>`}
   </section>`;

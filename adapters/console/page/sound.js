@@ -1,4 +1,5 @@
 /** A sound, and the tab's title, for alarms that nobody has acknowledged. Browsers allow sound after the first gesture. */
+import { standing } from "./alert.js";
 import { kept } from "./ui.js";
 
 /** Milliseconds between two sounds while an alarm stands. */
@@ -30,7 +31,7 @@ export class Sound {
   #look() {
     const alarms = this.#store.section("alarms");
     const name = this.#store.section("mission").get("name") ?? "bigactors console";
-    const newest = [...alarms.values()].sort((a, b) => b.time - a.time)[0];
+    const [, newest] = standing(alarms, this.#store.section("vehicles"))[0] ?? [];
     document.title = newest ? `(${alarms.size}) ${newest.about || newest.kind}: ${newest.kind} · ${name}` : name;
     const runs = !this.#store.section("clock").get("ended");
     const isNew = [...alarms.keys()].some((key) => !this.#known.has(key));

@@ -16,10 +16,11 @@ const within = (name) => (name === null || name === undefined ? "nowhere" : name
 
 /** The believed and the actual place of a vehicle or an entity; a vehicle under way is in no place until it arrives. */
 export function whereabouts(card) {
-  const { believed, actual, differs, going, order, request, returning, taken, kind } = card;
+  const { believed, actual, differs, going, order, request, returning, taken, kind, armed } = card;
   if (returning) return `${placeName(believed)} → ${moves(kind)} home`;
   if (!differs) return placeName(believed);
   const to = isUnderWay(order) ? order.to : going && !request && !taken ? going : null; // this station does not see another's order
+  if (to && armed === false && order?.state !== "accepted") return `${placeName(believed)} → has not set out to ${to}`;
   if (to) return `${placeName(believed)} → under way to ${to}`;
   return going ? `left ${placeName(believed)}, has not arrived anywhere yet` : `believed ${within(believed)}, really ${within(actual)}`;
 }

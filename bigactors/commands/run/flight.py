@@ -332,6 +332,8 @@ async def fly(
             await live.begin(options.wait, forced=options.unverified)
             await check_start(live, before)
         flight.start.begun = True
+        if flight.company is not None:
+            flight.company.sharing.begun = True
         settle()
         say(f"{flight.mission.name} begins; bigactors status, say, hold and return reach it at {path}")
         return await live.go(seconds=options.duration)

@@ -294,10 +294,25 @@ def world():
                 "reached": None,
                 "heard": None,
                 "agrees": None,
+                "begun": None,
                 "vehicles": ["uav0", "uav1"],
             },
-            "faro": {"here": False, "reached": True, "heard": now - 2, "agrees": True, "vehicles": ["boat0"]},
-            "lagos": {"here": False, "reached": False, "heard": now - 120, "agrees": None, "vehicles": []},
+            "faro": {
+                "here": False,
+                "reached": True,
+                "heard": now - 2,
+                "agrees": True,
+                "begun": True,
+                "vehicles": ["boat0"],
+            },
+            "lagos": {
+                "here": False,
+                "reached": False,
+                "heard": now - 120,
+                "agrees": None,
+                "begun": None,
+                "vehicles": [],
+            },
         },
     }
 

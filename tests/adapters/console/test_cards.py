@@ -6,7 +6,7 @@ from recorded import BETWEEN, EAST, FLIGHT, WEST, Tape, told, uav
 
 from adapters.live.batch import GivingBack, Ordering
 from adapters.live.timing_monitor import flying
-from adapters.plugin import GoTo, LinkLost, LinkRestored, Rejected, Status, TakenOver
+from adapters.plugin import GoTo, LinkLost, LinkRestored, Rejected, Status, StatusText, TakenOver
 from semantics.live_policy import Fallback
 
 
@@ -50,6 +50,68 @@ def test_a_vehicle_of_which_nothing_is_asked_says_for_whom_it_waits(tape):
     tape.turn(60, uav(EAST, 60))
     tells(1060.5)
     assert says(tape.card(), level=0, why='it has no request: op waits for "handover"')
+
+
+def test_a_vehicle_that_is_not_armed_for_its_flight_is_watched_and_its_own_words_say_why(tape):
+    tape.run.willing = False
+    tape.turn(0, uav(WEST, 0))
+    tape.recorder.report(Status("uav0", 1001.0, "autopilot", 1001.0, "STABILIZE", armed=False), 1001.0)
+    tape.turn(14, uav(WEST, 14))
+    assert so(tape.card()) == (0, "well", "")
+    tape.recorder.report(StatusText("uav0", 1015.0, "PreArm: no compass", 2), 1015.0)
+    tape.turn(16, uav(WEST, 16))
+    assert so(tape.card()) == (1, "watch", "it has not set out to east0: PreArm: no compass")
+    tape.recorder.report(Status("uav0", 1017.0, "autopilot", 1017.0, "GUIDED", armed=True), 1017.0)
+    assert so(tape.card()) == (0, "well", "")
+
+
+def test_before_the_start_a_vehicle_that_refuses_to_arm_is_watched(tape):
+    item = {"what": "uav0 is heard", "done": True, "detail": "", "vehicle": "uav0", "fence": None}
+    tape.turn(0, uav(WEST, 0))
+    for state, card in (
+        ("ready", (1, "watch", "it refuses to arm: PreArm: no compass")),
+        ("begun", (0, "well", "")),
+    ):
+        tape.recorder.preflight(
+            {"state": state, "by": "", "items": [item | {"refuses": ["PreArm: no compass"]}]}, 1000.5
+        )
+        assert so(tape.card()) == card
+
+
+def test_a_vehicle_with_nothing_to_do_says_first_for_whom_its_own_bigactor_waits(tmp_path):
+    text = FLIGHT.replace("BigActor a hosted_at uav0", "BigActor z hosted_at uav0")
+    text = text.replace("FLY a", "FLY z").replace('send "there" to op', 'react { case "on" => skip }')
+    with Tape(tmp_path / "r.mcap", text) as tape:
+        tape.turn(0, uav(WEST, 0))
+        tape.turn(60, uav(EAST, 60))
+        tape.recorder.report(Status("uav0", 1060.5, "autopilot", 1060.5, "GUIDED", armed=True), 1060.5)
+        assert so(tape.card()) == (0, "well", 'it has no request: z waits for "on"')
+
+
+def test_a_vehicle_that_obeys_another_station_has_no_reason_from_the_bigactors_of_this_one(tmp_path):
+    with Tape(
+        tmp_path / "r.mcap", station={"here": "gcs0", "hosts": {"gcs0": "gcs0", "gcs1": "gcs1"}}
+    ) as tape:
+        tape.turn(0, uav(WEST, 0))
+        tape.turn(60, uav(EAST, 60))
+        status = Status("uav0", 1061.0, "autopilot", 1061.0, "GUIDED", armed=True, authority=("gcs1",))
+        tape.recorder.report(status, 1061.0)
+        assert so(tape.card()) == (0, "well", "")
+
+
+def test_a_request_that_cannot_be_served_is_wrong(tmp_path):
+    text = FLIGHT.replace(
+        "  observe(CHILDREN(east0))", '  react { case "on" => control(MOVE_HOST_TO west0) }\n  observe(ALL)'
+    )
+    with Tape(tmp_path / "r.mcap", text.replace("environment {", 'environment {\n  says "on" to a')) as tape:
+        tape.turn(0, uav(WEST, 0))
+        tape.turn(60, uav(EAST, 60))
+        tape.turn(61, uav(BETWEEN, 61))
+        tape.turn(62, sayings=[("a", "on")])
+        where = "uav0 is believed in east0 and is in none of the places"
+        blocked = f"CTR(a, MOVE_HOST_TO west0) is inconsistent: {where}; it stays pending"
+        assert blocked in [alert["message"] for alert in tape.shown()["alarms"].values()]
+        assert f"its request is inconsistent: {where}; it stays pending" in tape.card()["why"]
 
 
 def test_arrival_is_what_the_rules_say_it_is_and_where_l_and_p_differ_after_it_is_wrong(tape):

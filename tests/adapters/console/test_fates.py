@@ -186,6 +186,20 @@ def test_an_alarm_has_its_consequence_whichever_finding_had_it_until_it_is_ackno
         assert [(each["what"], each["about"]) for each in tape.actions()] == [("acknowledge", "uav0")]
 
 
+def test_the_consequence_of_a_lost_link_and_of_a_take_over_is_as_it_is_now(tape):
+    def consequences():
+        return {each["kind"]: each["consequence"] for each in tape.shown()["alarms"].values()}
+
+    tape.turn(0, uav(WEST, 0))
+    tape.turn(5, reports=[LinkLost("uav0", 1005.0, 1000.0), TakenOver("uav0", 1005.0, "a pilot flies it")])
+    decides = "its autopilot decides, and orders reach it once it is heard"
+    kept = "the mission does not command it until it is given back"
+    assert consequences().items() >= {"lost link": decides, "taken over": kept}.items()
+    tape.turn(6, uav(WEST, 6), reports=[LinkRestored("uav0", 1006.0)], sayings=[GivingBack("uav0")])
+    given = {"lost link": "it is heard again", "taken over": "it was given back"}
+    assert consequences().items() >= given.items()
+
+
 def test_what_is_wrong_now_is_shown_beside_each_earlier_moment_of_a_run_that_goes_on(tape):
     tape.turn(0, uav(WEST, 0))
     tape.turn(10, reports=[LinkLost("uav0", 1010.0, 1000.0)])

@@ -10,6 +10,22 @@ SAID = {"say": {"agent": "tower", "message": "handover"}}
 HELD = {"order": {"order": "hold", "vehicle": "uav0"}}
 
 
+def test_an_order_is_offered_where_it_has_an_effect_and_says_beforehand_what_it_overrules(operates):
+    ana = operates()
+    ana.opens("uav0")
+    ana.sees(f"{HOLD}:enabled")
+    ana.told(vehicles={"uav0": card(authority=["faro"])})
+    ana.sees(".card .orders", "obeys faro: order it there")
+    assert ana.count(".card .held") == 0
+    fails_safe = card(3, taken="it said 'Battery 1 is low'; it is in RTL", authority=["faro", "porto"])
+    ana.told(vehicles={"uav0": fails_safe})
+    ana.sees(".card .on-return", "Each order overrules the pilot or the fail-safe")
+    ana.sees(f"{HOLD}:enabled")
+    held = {"order": "hold", "by": "Ana", "since": time.time(), "state": "confirmed", "why": ""}
+    ana.told(vehicles={"uav0": fails_safe | {"ordered": held}})
+    ana.sees_no(".card .on-return")
+
+
 # --- a name
 
 
@@ -176,7 +192,7 @@ def test_several_are_chosen_in_the_table_and_ordered_at_once(operates):
     rows = ana.page.locator(".fleet .row").evaluate_all(
         "all => all.map((e) => e.getBoundingClientRect().height)"
     )
-    assert rows == [28, 28, 28, 28]
+    assert rows == [46, 46, 46, 46]
     assert [each.split()[-1] for each in ana.texts(".fleet .name")] == ["uav1", "uav10", "uav0", "boat0"]
     for name in ("uav0", "uav10"):
         ana.page.get_by_label(f"choose {name} for").check()
@@ -327,6 +343,9 @@ def start_it_when_all_is_done(ana, bo):
             "Compass not calibrated",
         ):
             assert what in row
+        assert (
+            each.count(".held:not(.start), .sayings, #note") == 0
+        )  # the run takes nothing else before its start
         box = each.box(".preflight .start")
         assert box["x"] >= 0
         assert box["x"] + box["width"] <= each.page.viewport_size["width"]
@@ -336,6 +355,7 @@ def start_it_when_all_is_done(ana, bo):
     ana.harness.change(preflight={"state": "begun", "by": "Ana"})
     for each in (ana, bo):
         each.sees_no(".preflight")
+    ana.sees(HOLD)
 
 
 def sees_it_break_off_which_is_no_end(ana):

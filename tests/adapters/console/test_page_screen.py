@@ -1,9 +1,10 @@
 """The page in use, as stories: by keys, in the past, under a hand, on a phone, in the dark, with hostile names."""
 
 import re
+import time
 
 import pytest
-from browsers import PHONE, overflow
+from browsers import DESK, PHONE, overflow
 from page_driving import HOLD, by_mouse
 from page_harness import card, crowd, world
 
@@ -321,6 +322,28 @@ def test_a_small_desk_shows_a_fleet_of_fifty_without_moving_in_any_direction(ope
     ]
     assert [box for box in boxes if box["x"] < 0 or box["x"] + box["width"] > 1024] == []
     assert ana.page.locator(".cards .scroll, .panel, aside").evaluate_all(WIDER) == []
+
+
+def test_a_row_says_whole_how_a_vehicle_is_and_for_how_long_its_link_is_lost(operates):
+    state = world()
+    link = {"heard": time.time() - 3_000, "lost": True}
+    state["vehicles"]["uav1"] |= {"link": link, "word": "taken over"}
+    for size in (DESK, {"width": 1024, "height": 768}, PHONE):
+        ana = operates(state, size=size)
+        if size is PHONE:
+            ana.clicks("#tab-vehicles")
+        ana.sees("[data-row=uav1] .link", "link lost 50 min")
+        assert ana.page.locator("[data-row=uav1] .row > :not(.rest)").evaluate_all(WIDER) == []
+
+
+def test_the_start_panel_shows_why_a_vehicle_refuses_to_arm_on_a_small_desk(operates):
+    item = {"what": "uav0 is heard", "done": True, "detail": "", "vehicle": "uav0"}
+    item |= {"fence": "not on board: it is sent before the first flight"}
+    refuses = ["PreArm: Compass not calibrated", "PreArm: Battery 1 unhealthy"]
+    start = {"state": "ready", "by": "", "items": [item | {"refuses": refuses}]}
+    ana = operates(world() | {"preflight": start}, size={"width": 1024, "height": 768})
+    ana.sees(".preflight .bad", "Battery 1 unhealthy")
+    assert ana.page.locator(".preflight .rows").evaluate_all(WIDER) == []
 
 
 # --- how it looks

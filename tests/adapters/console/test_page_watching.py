@@ -24,6 +24,7 @@ def test_a_card_tells_of_a_flight_in_an_operators_words(operates):
     ana = operates()
     reads_no_calculus(ana)
     reads_that_a_request_stands_back_while_its_vehicle_is_held_or_given_up(ana)
+    reads_of_one_that_is_not_armed_for_its_flight(ana)
     reads_how_far_it_is_to_the_edge_of_a_place(ana)
     reads_of_a_vehicle_on_its_way_home(ana)
     reads_that_a_boat_sails(ana)
@@ -53,6 +54,14 @@ def reads_that_a_request_stands_back_while_its_vehicle_is_held_or_given_up(ana):
     ana.told(vehicles={"uav0": flies | {"request": flies["request"] | {"given_up": True}}})
     ana.sees(f"{UAV0} .request", "given up: flies to spillArea")
     ana.sees_no(f"{UAV0} .bar")
+
+
+def reads_of_one_that_is_not_armed_for_its_flight(ana):
+    sent = {"order": flight(state="sent"), "differs": True, "going": "searchArea0"}
+    ana.told(vehicles={"uav0": card(**sent, armed=False)})
+    ana.sees(f"{UAV0} .place", "searchArea0 → has not set out to searchArea0")
+    ana.told(vehicles={"uav0": card(**sent)})
+    ana.sees(f"{UAV0} .place", "searchArea0 → under way to searchArea0")
 
 
 def reads_how_far_it_is_to_the_edge_of_a_place(ana):
@@ -267,6 +276,13 @@ def reads_the_cause_first_and_what_the_run_did_of_itself(ana):
     lost = alert(now, "lost link", "uav1", "nothing was heard of uav1", "")
     ana.told(alerts=dict.fromkeys(ana.harness.state["alerts"]) | {"31": broken, "32": lost})
     ana.sees(".alert .message", "nothing was heard of uav1")
+    ana.told(alerts={"31": broken | {"time": now + 20}})
+    ana.told(alerts={"33": alert(now + 10, "late", "uav10", "the move is late", "")})
+    ana.sees(".alert .message", "nothing was heard of uav1")
+    ana.sees_that("document.title.startsWith('(3) uav1: lost link')")
+    ana.told(alerts={"31": broken | {"time": now + 60}})
+    ana.sees(".alert .message", "is not on control:gcs0 any more")
+    ana.told(alerts={"31": broken, "33": None})
     ana.told(alerts={"32": acknowledged(lost)})
     ana.sees(".alert .message", "control:gcs0 any more → all vehicles were commanded to return home")
 

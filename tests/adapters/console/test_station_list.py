@@ -80,18 +80,40 @@ def test_other_stations_are_reached_or_not_as_they_were_heard(run, tmp_path):
         ("stations", 1003.0, {"station": "gcs1", "time": 1003.0, "reached": False, "heard": 1001.5}),
         ("stations", 1003.0, {"station": "nobody", "time": 1003.0, "reached": True, "heard": 1001.5}),
     )["stations"]
-    assert shown["gcs1"] == {"here": False, "reached": False, "heard": 1001.5, "agrees": None, "vehicles": []}
-    assert shown["gcs2"] == {"here": False, "reached": None, "heard": None, "agrees": None, "vehicles": []}
+    assert shown["gcs1"] == {
+        "here": False,
+        "reached": False,
+        "heard": 1001.5,
+        "agrees": None,
+        "begun": None,
+        "vehicles": [],
+    }
+    assert shown["gcs2"] == {
+        "here": False,
+        "reached": None,
+        "heard": None,
+        "agrees": None,
+        "begun": None,
+        "vehicles": [],
+    }
     assert set(shown) == set(STATIONS)
 
 
-def test_a_vehicle_whose_station_is_not_reached_is_wrong(run, tmp_path):
+def test_a_vehicle_whose_station_is_not_reached_or_has_not_started_is_wrong(run, tmp_path):
     obeys = {"plugin": "autopilot", "entity": "uav0", "kind": "UAV", "ring": [[370100000, -86500000]]}
     messages = [
         ("arrivals", 1001.0, {**obeys, "channels": ["control:gcs1"]}),
         ("stations", 1002.0, {"station": "gcs1", "time": 1002.0, "reached": False, "heard": 1000.5}),
     ]
-    for count, level, why in ((1, 0, ""), (2, 2, "its station gcs1 is not reached")):
+    waits = {"station": "gcs1", "time": 1003.0, "reached": True, "heard": 1003.0, "begun": False}
+    messages += [("stations", 1003.0, waits), ("stations", 1004.0, waits | {"begun": True})]
+    unstarted = "its station gcs1 has not started: nobody commands it"
+    for count, level, why in (
+        (1, 0, ""),
+        (2, 2, "its station gcs1 is not reached"),
+        (3, 2, unstarted),
+        (4, 0, ""),
+    ):
         card = told(tmp_path / f"{count}.mcap", run, *messages[:count])["vehicles"]["uav0"]
         assert (card["level"], card["why"]) == (level, why)
 

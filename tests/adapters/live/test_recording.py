@@ -325,7 +325,7 @@ PARTS = {
         ("kind about message fallback text lacks", "c"),
         ("time since done heard heading height", 1.5),
         ("count number severity", 1),
-        ("rebooted elsewhere reached armed returning follows surface agrees", True),
+        ("rebooted elsewhere reached armed returning follows surface agrees begun", True),
         ("names authority", ("d",)),
         ("place waypoint shape", box((1, 2), (3, 4))),
         ("path", (box((1, 2), (3, 4)), box((1, 2), (3, 5)))),

@@ -125,8 +125,8 @@ RTL = "it is in RTL, by itself or by a command from elsewhere"
 @pytest.mark.parametrize(
     ("foe", "legs", "reason"),
     [
-        (low_battery(1), 1, f"{RTL}; its last words: {BATTERY}"),
-        (low_battery(3), 3, f"{RTL}; its last words: {BATTERY}"),
+        (low_battery(1), 1, f"it said {BATTERY}; {RTL}"),
+        (low_battery(3), 3, f"it said {BATTERY}; {RTL}"),
         (other_station, 1, RTL),
     ],
     ids=["over its destination", "to where the mission ends", "by another station"],

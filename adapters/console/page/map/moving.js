@@ -13,7 +13,8 @@ const RADIUS = { vehicle: 14, target: 9, diamond: 8, place: 5, dot: 2 };
 const CROWD = 300; // the targets in view above which only one in each cell has a symbol, the others dots
 const CELL = 22;
 const LABELLED = 120;
-const ROOMY = 110; // pixels with room for the names of most areas
+const ROOMY = 55; // pixels of height with room for a name and a vehicle
+const EDGE = 12; // pixels beside a name inside its area
 const PRIORITY = { chosen: 0, vehicle: 1, named: 2, place: 3, fence: 4, target: 5 };
 const MARKS = ["", "▲", "■", "✖"];
 
@@ -330,8 +331,8 @@ function drawLabels({ ctx, view, palette, lettering }, store, things, stations, 
     ...things.filter(({ full, shape }) => full || shape === "diamond").map((thing) => thingLabel(thing, chosen)),
     ...targetLabels(things),
     ...stations.map(({ name, at, radius }) => ({ key: `p ${name}`, name, at, radius, font: "place", colour: "place", priority: PRIORITY.place })),
-    ...areaLabels(view, store.section("places"), "place"),
-    ...areaLabels(view, store.section("fences"), "fence"),
+    ...areaLabels(view, store.section("places"), "place", lettering),
+    ...areaLabels(view, store.section("fences"), "fence", lettering),
   ];
   const sized = wanted.map((label) => withSize(label, lettering));
   const placed = placeLabels(sized, taken, slots, view);
@@ -358,13 +359,13 @@ function targetLabels(things) {
 }
 
 /** The labels of places and fences: inside at the upper edge, or beside areas too small for that. */
-function* areaLabels(view, areas, sort) {
+function* areaLabels(view, areas, sort, lettering) {
   for (const [name, { ring }] of areas) {
     if (ring.length < 3 || !view.seesLine(lineOf(ring), 0)) continue;
     const [left, top, right, bottom] = view.box(lineOf(ring));
     const text = sort === "fence" ? `fence of ${drawable(name)}` : undefined;
-    const label = { key: `${sort} ${name}`, name, text, font: "place", colour: sort, priority: PRIORITY[sort] };
-    if (right - left > ROOMY && bottom - top > ROOMY / 2) yield { ...label, at: shown([left, top, right, bottom], view), radius: 0, centred: true };
+    const label = withSize({ key: `${sort} ${name}`, name, text, font: "place", colour: sort, priority: PRIORITY[sort] }, lettering);
+    if (right - left > label.size[0] + EDGE && bottom - top > ROOMY) yield { ...label, at: shown([left, top, right, bottom], view), radius: 0, centred: true };
     else yield { ...label, at: [(left + right) / 2, (top + bottom) / 2], radius: Math.max(right - left, bottom - top) / 2 };
   }
 }
