@@ -14,7 +14,7 @@ from checker.properties.temporal.lassos import Lasso
 from checker.properties.temporal.shortest import run_into
 from semantics.properties.temporal import SERVES
 from semantics.state.configuration import Configuration, Label
-from semantics.state.requests import FLY, READY, Request
+from semantics.state.requests import FLY, READY, Request, request_key
 from semantics.state.signature import Name
 
 Pending = Mapping[Request, Sequence[int] | Numbers]
@@ -83,7 +83,7 @@ class ProgressSearch:
         """Return the nearest starved request of each kind, and the number of starved requests."""
         first: dict[str, tuple[int, Request]] = {}
         count = 0
-        for request in self.pending:
+        for request in sorted(self.pending, key=request_key):  # engines find them in different orders
             entries = np.flatnonzero(self.waiting(request) >= 0)
             if len(entries):
                 count += 1

@@ -5,11 +5,12 @@ import sys
 from pathlib import Path
 
 import numpy as np
+from checked_missions import load
 from hypothesis import assume, given
 from hypothesis import strategies as st
 from scale import examples
 
-from checker import Limits, explore
+from checker import Engine, Limits, check, explore
 from checker.properties.temporal.decide import TemporalDecider
 from checker.properties.temporal.fairness import EACH_RULE_AND_REQUEST
 from checker.properties.temporal.linear import counterexample
@@ -66,6 +67,21 @@ def is_violated(decider, fairness, request, numbers):
         counterexample(graph, FormulaTruth(graph, {pending: here}, {served: taken}), formula, fairness)
         is not None
     )
+
+
+def test_of_requests_that_starve_alike_every_engine_shows_the_same():
+    apart = """
+    signature { kind Place contains UAV kind UAV driven }
+    world { p0: Place = box (0, 0) (1, 1)  u0: UAV = point (0.5, 0.5)  u1: UAV = point (0.5, 0.6) }
+    BigActor a hosted_at u1 with_behavior { observe(HOST) send "x" to b }
+    BigActor b hosted_at u0 with_behavior { send "x" to a }
+    scheduler fcfs
+    check { progress }
+    """
+    mission = load(apart, "")
+    reports = [check(mission, engine=engine) for engine in (Engine.REFERENCE, Engine.FAST)]
+    shown = [[each.message for each in report.verdicts["progress"].violations] for report in reports]
+    assert shown[0] == shown[1] == ['SND(a, b, "x") is never served']
 
 
 def test_what_asks_nothing_of_runs_loads_no_library_for_them():
