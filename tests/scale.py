@@ -10,7 +10,7 @@ PART = 3
 
 
 def examples(most, part=PART, **more):
-    """Return the settings of a property that is tried with so many examples: `make test` takes the given part of them."""
+    """Return the settings of a property that is tried with so many examples; `make test` divides them by `part`."""
     return settings(max_examples=most if IS_WHOLE else most // part, **more)
 
 

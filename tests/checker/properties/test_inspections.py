@@ -215,7 +215,9 @@ SENDS = 'send("go", b)'
         ),
         (
             agents(a=("uav0", SENDS), b=("uav1", "")) + "believes { uav1 unlinked }",
-            ('SND(a, b, "go"): their hosts, uav0 and uav1, share no link in belief: both are actually on mesh',),
+            (
+                'SND(a, b, "go"): their hosts, uav0 and uav1, share no link in belief: both are actually on mesh',
+            ),
         ),
         (
             agents(a=("gcs0", "migrate(uav1)")),

@@ -150,7 +150,9 @@ def cut_reduced(folder, at):
     return reduced(limits, keeping=Keeping(folder, True, "d"), report=stop, every=0.0)
 
 
-@pytest.mark.parametrize("folded", [False, pytest.param(True, marks=pytest.mark.long)], ids=["plain", "folded"])
+@pytest.mark.parametrize(
+    "folded", [False, pytest.param(True, marks=pytest.mark.long)], ids=["plain", "folded"]
+)
 def test_a_search_of_representatives_that_was_cut_goes_on(tmp_path, monkeypatch, folded):
     whole = seen(reduced())
     if folded:
