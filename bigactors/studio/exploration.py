@@ -210,7 +210,7 @@ class Exploration:
         end = self._visit(trace, len(trace))
         for asked in self.mission.properties:
             for each in wrong_here(asked, end):
-                violation = Violation(each.kind, each.message, trace, subject=each.subject)
+                violation = Violation(each.kind, each.message, trace, each.details, each.subject)
                 return causes_of(trace, violation, formulas_of(asked))
         return causes_of(trace)
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from checker.check import BY_LOOKING
 from checker.properties.findings import Collected, Finding
+from checker.properties.inspections import Inspection, Invariant
 from checker.properties.races import STALE, ControlRaces, StaleObservationRaces
 from semantics.properties.kinds import PropertyKind
 from semantics.properties.property import Property
@@ -69,11 +70,13 @@ def wrong_here(asked: Property, here: Visit) -> list[Finding]:
         last = [Finding(STALE, "the last step was a stale-observation race", 0)] if here.raced else []
         return [*last, *_first(_races(here))]
     if asked.kind in BY_LOOKING:
-        inspection = BY_LOOKING[asked.kind](1)
-        inspection(0, here.c, here.expansion)
-        return _first([inspection.collected])
-    is_false = asked.kind is PropertyKind.INVARIANT and not holds(asked.formula, here.c)
-    return [Finding("invariant", "not true here", 0)] if is_false else []
+        inspection: Inspection = BY_LOOKING[asked.kind](1)
+    elif asked.kind is PropertyKind.INVARIANT:
+        inspection = Invariant(asked.formula, asked.shown, 1)
+    else:
+        return []
+    inspection(0, here.c, here.expansion)
+    return _first([inspection.collected])
 
 
 def _first(found: Sequence[Collected]) -> list[Finding]:

@@ -121,9 +121,9 @@ class AllNodes(Node):
 class QueryApplication(Node):
     """`PARENT(q)`, `CHILDREN(q)`, `LINKED_TO(q)` or `HOSTED_AT(q)`.
 
-    A relation, applied to each node of the inner query's answer. `PARENT_HOST`, `CHILDREN_HOST`, `LINKED_TO_HOST` and
-    `HOSTED_AT_HOST` are short for the relation applied to `HOST`. An observation of `CHILDREN(x)` also shows x, so
-    `x in o` is true. `size`, `empty`, `first`, `of`, `for` and `choose` use only its members, the children.
+    A relation, applied to each node that the inner query shows. `PARENT_HOST`, `CHILDREN_HOST`, `LINKED_TO_HOST` and
+    `HOSTED_AT_HOST` are short for the relation of `HOST`. `CHILDREN(x)` also shows x, so `x in o` is true; `size`,
+    `empty`, `first`, `of`, `for` and `choose` use only the children. Of `LINKED_TO(x)`, x is a member too.
     """
 
     relation: QueryOperator

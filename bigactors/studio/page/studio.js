@@ -107,6 +107,8 @@ class Studio {
 
   #edited() {
     this.unsaved.set(this.editor.text !== this.inFile);
+    this.number++; // verdicts on the text before are out of date
+    this.verdicts.set({ ...this.verdicts.value, state: "running" });
     clearTimeout(this.pausing);
     this.pausing = setTimeout(() => this.#send(), PAUSE);
   }

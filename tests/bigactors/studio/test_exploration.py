@@ -106,6 +106,7 @@ def test_a_run_into_what_an_invariant_forbids_is_told_its_causes():
     assert [each["text"] for each in shown["causes"]] == [
         "uav0 sets off for east0, as first wants",
         "uav1 sets off for north0, as second wants",
+        violation.details[-1],
     ]
     assert asked(exploration, ask="run", run=shown["run"].rpartition(".")[0])["causes"] == []
 

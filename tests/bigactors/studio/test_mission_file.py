@@ -32,6 +32,13 @@ def test_a_text_is_not_saved_over_what_the_page_does_not_know(tmp_path):
     assert path.read_text(encoding="utf-8") == "theirs\n"
 
 
+def test_a_mission_begins_in_an_empty_file(tmp_path):
+    path = tmp_path / "patrol.mission"
+    path.write_text(" \n", encoding="utf-8")
+    assert begin_mission(tmp_path, "patrol", "") == path
+    assert "\nmission patrol\n" in path.read_text(encoding="utf-8")
+
+
 def test_a_mission_begins_from_the_template_or_a_shipped_one_with_its_recording(tmp_path):
     path = begin_mission(tmp_path, "patrol", "")
     assert "\nmission patrol\n" in path.read_text(encoding="utf-8")

@@ -136,13 +136,13 @@ async def test_the_exploration_is_of_the_newest_text_and_says_why_it_is_not(file
         assert (await heard("explored"))["refused"].startswith("the text has mistakes")
 
 
-async def test_a_flight_of_a_mission_that_does_not_hold_is_refused_with_its_verdict(file):
+async def test_a_flight_of_a_mission_that_does_not_hold_is_refused_with_the_remedy(file):
     file.write_text(f'{SMALL}check {{ invariant "gone": not u in a }}', encoding="utf-8")
     async with page(file) as (socket, heard):
         await socket.send_json({"type": "fly", "id": 1})
         said = (await heard("flying"))["refused"]
         assert said.startswith("the flight does not begin:\n")
-        assert "✗ gone" in said
+        assert "gone: not true here: not u in a\n  hint: write the line control timed into the text" in said
 
 
 def checks():

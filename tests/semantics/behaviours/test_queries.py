@@ -56,6 +56,17 @@ def test_linked_to_shows_all_points_of_all_links():
     assert seen.links("u0") == {"wifi", "x"}
 
 
+def test_a_node_that_nothing_is_linked_to_is_the_member_of_what_is_linked_to_it():
+    c = mission(["base", "u0"])
+    assert look(c, of("LINKED_TO", "u0")).members == ("u0",)
+    assert look(c, of("CHILDREN", "u0")).members == ()
+
+
+def test_an_operator_is_applied_to_the_place_whose_children_are_asked_for_too():
+    c = mission(["sea", "area"])
+    assert look(c, of("PARENT CHILDREN", "area")).members == ("sea",)
+
+
 def test_hosted_at_composes_with_other_queries():
     agents = {"a": ("gcs0", ()), "b": ("gcs1", ()), "c": ("u0", ())}
     c = mission(["u0", "gcs0", "gcs1"], agents=agents, channels={"u0": ["w"], "gcs0": ["w"]})
