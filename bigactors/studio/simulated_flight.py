@@ -1,16 +1,20 @@
 """Check a mission and fly it with simulated vehicles, with the operator's console beside it: a process of its own.
 
 `python -m bigactors.studio.simulated_flight FILE FOLDER`. It prints what `bigactors run --console` prints, the links of
-the console among it. Only the vehicles are simulated, and time passes ten times as fast.
+the console among it. Only the vehicles are simulated, and time passes ten times as fast. It ends at the end of its
+input: a studio that is killed cannot end it otherwise.
 """
 
 from __future__ import annotations
 
 import json
+import os
+import signal
 import sys
 from contextlib import redirect_stderr, redirect_stdout
 from io import StringIO
 from pathlib import Path
+from threading import Thread
 from typing import Any, Final
 
 from bigactors.cli import main as command
@@ -29,7 +33,16 @@ COPTER: Final = "simulated:copter"
 def main() -> int:
     """Fly a mission's file with recording, verdict and socket in a folder; return the exit code."""
     file, folder = sys.argv[1:]
+    Thread(target=_end_with_input, daemon=True).start()
     return reported(lambda: _flown(file, Path(folder)))
+
+
+def _end_with_input() -> None:
+    while os.read(
+        sys.stdin.fileno(), 1 << 10
+    ):  # unbuffered: at its exit, Python waits for the lock of a buffer
+        pass
+    os.kill(os.getpid(), signal.SIGTERM)
 
 
 def _flown(file: str, folder: Path) -> int:
