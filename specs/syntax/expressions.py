@@ -123,7 +123,7 @@ class QueryApplication(Node):
 
     A relation, applied to each node that the inner query shows. `PARENT_HOST`, `CHILDREN_HOST`, `LINKED_TO_HOST` and
     `HOSTED_AT_HOST` are short for the relation of `HOST`. `CHILDREN(x)` also shows x, so `x in o` is true; `size`,
-    `empty`, `first`, `of`, `for` and `choose` use only the children. Of `LINKED_TO(x)`, x is a member too.
+    `empty`, `first`, `of`, `for` and `choose` use only the children. Of `LINKED_TO(x)`, x is a member.
     """
 
     relation: QueryOperator

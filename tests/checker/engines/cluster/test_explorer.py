@@ -3,14 +3,14 @@
 from dataclasses import replace
 
 import pytest
-from checked_missions import visited
+from checked_missions import load, visited
 from hypothesis import given
-from local_crew import LocalCrew
+from local_crew import LocalCrew, explore_in_threads
 from scale import IS_WHOLE, examples
 
-from checker import CheckpointError, Engine, Keeping, Limits, MachineError, explore
+from checker import CheckpointError, Engine, Keeping, Limits, MachineError, check, explore
 from checker.engines.archive import read_archive, write_archive
-from checker.engines.cluster import explorer, rounds, shard
+from checker.engines.cluster import explorer, ray_crew, rounds, shard
 from checker.engines.cluster.checkpoints import KINDS, SCHEMA
 from checker.engines.cluster.explorer import Expedition
 from checker.engines.contract import Options
@@ -220,6 +220,47 @@ def test_workers_fold_their_rows(name, tmp_path, monkeypatch):
         assert counted(found) == counted(alone)
         assert {(c, label.rule, d) for c, label, d in edges_of(found)} == seen
         assert crew.revived == bool(died)
+
+
+WAYS = """
+signature { kind Place contains UAV kind UAV driven }
+control timed
+world {
+  west: Place = box (0, 0) (0.01, 0.01)
+  prison: Place = box (0, 0.02) (0.01, 0.03)
+  east: Place = box (0, 0.04) (0.01, 0.05)
+  south: Place = box (-0.05, 0.02) (-0.04, 0.03)
+  u0: UAV = point (0.005, 0.005)
+  u1: UAV = point (0.005, 0.006)
+}
+BigActor a hosted_at u0 with_behavior { control(MOVE_HOST_TO east) }
+BigActor b hosted_at u1 with_behavior {
+  control(MOVE_HOST_TO south)
+  let never = 1 if never == 2 { control(MOVE_HOST_TO east) }
+}
+check {
+  invariant "u0": not actually u0 in prison
+  invariant "u1": not actually u1 in prison
+  invariant "ways": not possibly u0 in south
+}
+"""
+"""u0 may cross the prison, u1 would if it ever went east, and they would meet there."""
+
+
+@pytest.mark.parametrize("engine", [Engine.FAST, Engine.RAY])
+@pytest.mark.usefixtures("small_rounds")
+def test_suspected_ways_are_decided_by_all_workers_and_when_resumed(monkeypatch, tmp_path, engine):
+    monkeypatch.setattr(ray_crew, "explore_with_ray", explore_in_threads)
+    mission = load(WAYS, "")
+    expected = check(mission, engine=Engine.REFERENCE, suspected=mission.suspicions).suspected
+    assert sorted(way is None for way in expected.values()) == [False, True, True]
+    options = {"engine": engine, "suspected": mission.suspicions}
+    assert check(mission, **options).suspected == expected
+    keeping = Keeping(str(tmp_path), every=0.0)
+    before = check(mission, limits=Limits(seconds=0.0), keeping=keeping, **options)
+    assert not before.complete
+    assert not [way for way in before.suspected.values() if way is None]
+    assert check(mission, keeping=replace(keeping, resumed=True), **options).suspected == expected
 
 
 # --- who is lost ----------------------------------------------------------------------------------------------
