@@ -108,6 +108,7 @@ environment {{
   uav0 arrives
   says "handover" to op0 at most once
 }}
+live {{ on broken assumption: continue }}
 check {{
   local_consistency
   race_freedom
