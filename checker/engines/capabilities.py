@@ -41,7 +41,6 @@ class Why(Enum):
 
     MATHEMATICS = "by mathematics"
     DESIGN = "by design"
-    UNBUILT = "not built yet"
     IDLE = "accepted, without effect"
     UNDECIDED = "accepted; some properties stay incomplete"
 
@@ -58,7 +57,7 @@ class UnsupportedPair:
     Attributes:
         one: A feature.
         other: The other feature.
-        why: Whether it cannot work, or is not built.
+        why: Whether it cannot work, or has no effect.
         reason: The message.
         remedy: What to do instead.
         unless: Features of which each lifts the refusal.
@@ -102,8 +101,8 @@ UNSUPPORTED: Final = (
     _P(_F.REFERENCE, _F.SPILL, _W.DESIGN, "--spill works with the fast and Ray engines only", _ENGINE),
     _P(_F.REFERENCE, _F.PARANOID, _W.DESIGN, "--paranoid works with the fast and Ray engines and with reductions only",
         _ENGINE, frozenset({_F.POR, _F.SYMMETRY})),
-    _P(_F.RAY, _F.TIMING, _W.UNBUILT,
-        "the engine 'ray' does not explore missions with a section 'timing' yet", _ENGINE),
+    _P(_F.RAY, _F.TIMING, _W.DESIGN, "the engine 'ray' does not explore missions with a section 'timing': each process "
+        "would need the whole timed automaton, and two take more memory than one", _ENGINE),
     _P(_F.POR, _F.TIMING, _W.MATHEMATICS, "the reduction 'por' is refused: it is not sound for missions with a "
         "section 'timing', whose clock orders independent steps", _REDUCE),
     _P(_F.TIMING, _F.RUNS, _W.UNDECIDED,

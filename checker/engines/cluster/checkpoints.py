@@ -273,6 +273,8 @@ class Loading:
         read = spelling(
             self.packing, np.where(self.codes == UNKNOWN, 0, self.codes), self.begins, self.numbers
         )
+        unknown = self.numbers[read.varying.astype(np.int64)] == UNKNOWN  # all rows have their first values
+        read = read._replace(varying=read.varying[~unknown])
         shard.look_around()
         for _, words in self.rows.blocks(size):
             batch, count = shard.expander.batch, len(words) // self.packing.words

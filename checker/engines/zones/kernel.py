@@ -496,8 +496,9 @@ def advance(m: CompiledAutomaton, z: Zones, state: State, largest: int, until: i
 @njit(cache=True, _nrt=True)
 def arrange(m: CompiledAutomaton, z: Zones, state: State, kept: State) -> None:
     """Reorder the zones of the layer under construction and keep only the given ones; the others are covered."""
-    begin = state[LAYER]
-    used = z.begins[begin]
+    begin, used = state[LAYER], state[USED]
+    if state[COUNT] > begin:  # the first zone of an empty layer has no place
+        used = z.begins[begin]
     renamed = np.full(state[COUNT] - begin, -1, np.int64)
     for k in range(len(kept)):
         renamed[kept[k] - begin] = begin + k

@@ -1,7 +1,9 @@
 """Exploring with several workers, here in one process: the same as alone, whoever is lost on the way."""
 
+import shutil
 from dataclasses import replace
 
+import numpy as np
 import pytest
 from checked_missions import load, visited
 from hypothesis import given
@@ -10,7 +12,7 @@ from scale import IS_WHOLE, examples
 
 from checker import CheckpointError, Engine, Keeping, Limits, MachineError, check, explore
 from checker.engines.archive import read_archive, write_archive
-from checker.engines.cluster import explorer, ray_crew, rounds, shard
+from checker.engines.cluster import checkpoints, explorer, ray_crew, rounds, shard
 from checker.engines.cluster.checkpoints import KINDS, SCHEMA
 from checker.engines.cluster.explorer import Expedition
 from checker.engines.contract import Options
@@ -383,3 +385,34 @@ def test_a_checkpoint_whose_parts_do_not_fit_together_is_refused(tmp_path, part)
     write_archive(path, head, KINDS, list(arrays.values()))
     with pytest.raises(CheckpointError, match="damaged"):
         kept(tmp_path)
+
+
+@pytest.mark.usefixtures("small_rounds")
+def test_a_column_that_is_unknown_after_a_checkpoint_has_its_first_value_in_all_rows(tmp_path, monkeypatch):
+    """No worker writes where a column that it does not know would be: the process could die of that."""
+    translate, unknown = checkpoints.kernel.translate, []
+
+    def looked_at(rows, first, count, width, read, columns, *more):
+        unknown.extend(np.flatnonzero(read.numbers[read.varying] >= len(columns) // 3))
+        translate(rows, first, count, width, read, columns, *more)
+
+    initial, limits = start("oil_spill"), Limits(LIMITS.configurations)
+    stop = lambda told: told.configurations < 9 or limits.interruption.wish()  # noqa: E731 - as short as that
+    first, refused = tmp_path / "first", 0
+    together(initial, 2, limits=limits, report=stop, every=0.0, keeping=Keeping(str(first), digest="d"))
+    monkeypatch.setattr(checkpoints.kernel, "translate", looked_at)
+    [path] = first.rglob("shard-*-0.checkpoint")
+    head, arrays = read_archive(path, SCHEMA, KINDS)
+    size = len(arrays["sizes"])
+    for column in range(size):
+        folder = shutil.copytree(first, tmp_path / str(column))
+        places = arrays["places"].copy().reshape(size, -1)
+        places[column] ^= 1
+        changed = {**arrays, "places": places.ravel()}
+        write_archive(folder / path.relative_to(first), head, KINDS, list(changed.values()))
+        try:
+            kept(folder)
+        except CheckpointError:
+            refused += 1
+    assert 0 < refused < size
+    assert not unknown

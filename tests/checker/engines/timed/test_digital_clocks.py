@@ -296,7 +296,7 @@ environment { someone says "go" to b }
 
 def test_other_engines_and_reductions_are_refused_by_name(flight):
     with pytest.raises(
-        CombinationError, match="the engine 'ray' does not explore missions with a section 'timing' yet"
+        CombinationError, match="the engine 'ray' does not explore missions with a section 'timing': each"
     ):
         check(flight, (when(),), engine=Engine.RAY)
     with pytest.raises(
