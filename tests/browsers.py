@@ -91,7 +91,8 @@ def overflow(page):
 SPILLED = """() => [...document.querySelectorAll("button, input, select, label, a, h1, h2, p")].filter((each) => {
   const { right, left, width, height } = each.getBoundingClientRect();
   const moves = ".scroll, .rows, .cm-editor, .leaflet-container, .frame, .unseen, [hidden]";
-  return each.checkVisibility() && width > 1 && height > 1 && (right > innerWidth + 1 || left < -1) && !each.closest(moves);
+  const is_seen = each.checkVisibility() && width > 1 && height > 1 && !each.closest(moves);
+  return is_seen && (right > innerWidth + 1 || left < -1);
 }).map((each) => each.outerHTML.slice(0, 120))"""
 
 

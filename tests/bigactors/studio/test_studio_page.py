@@ -174,8 +174,8 @@ def drag(page, handle, to):
     shapes = "JSON.stringify(studio.shapes.value)"
     shows(page, handle)
     before = page.evaluate(shapes)
-    box, there = page.locator(handle).bounding_box(), page.locator("#map").bounding_box()
-    page.mouse.move(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
+    there = page.locator("#map").bounding_box()
+    page.hover(handle)  # once it rests: handles are drawn anew with each answer
     page.mouse.down()
     page.mouse.move(there["x"] + to[0], there["y"] + to[1], steps=5)
     page.mouse.up()
