@@ -91,8 +91,8 @@ def overflow(page):
 SPILLED = """() => [...document.querySelectorAll("button, input, select, label, a, h1, h2, p")].filter((each) => {
   const { right, left, width, height } = each.getBoundingClientRect();
   const moves = ".scroll, .rows, .cm-editor, .leaflet-container, .frame, .unseen, [hidden]";
-  const sticksOut = width > 1 && height > 1 && (right > innerWidth + 1 || left < -1);
-  return sticksOut && each.checkVisibility() && !each.closest(moves);
+  const isSeen = each.checkVisibility() && width > 1 && height > 1 && !each.closest(moves);
+  return isSeen && (right > innerWidth + 1 || left < -1);
 }).map((each) => each.outerHTML.slice(0, 120))"""
 
 

@@ -121,8 +121,10 @@ class FlightProcess:
         self._folder = TemporaryDirectory(prefix="bigactors-")
         module = f"{__package__}.simulated_flight"
         line = (sys.executable, "-P", "-m", module, file.name, self._folder.name)
-        there = {"cwd": file.resolve().parent, "stdin": PIPE, "stdout": PIPE, "stderr": STDOUT}
-        self._process = await asyncio.create_subprocess_exec(*line, **there)
+        there = file.resolve().parent
+        self._process = await asyncio.create_subprocess_exec(
+            *line, cwd=there, stdin=PIPE, stdout=PIPE, stderr=STDOUT
+        )
         said: list[str] = []
         with contextlib.suppress(TimeoutError):
             async with asyncio.timeout(STARTING):

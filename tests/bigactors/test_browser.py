@@ -1,25 +1,23 @@
 """Pages in a browser, with chromium and playwright where both are there: who reads them, as stories."""
 
+import json
 import re
 from io import BytesIO
 
 import pytest
-from browsers import DESK, PHONE, Watch, chromium, overflow, says
+from browsers import DESK, PHONE, TABLET, Watch, chromium, faults, overflow, says, spilled
 from drawn_missions import observing, oil_spill, run
 from PIL import Image, ImageStat
 
-from adapters.console.console_server import PAGE
 from bigactors.checking import Checked
 from bigactors.mission_lookup import digest_of
 from bigactors.pages import Story, trace_page
-from bigactors.trace_files import evidence_of, story_of
+from bigactors.trace_files import evidence_of, story_of, write_evidence
 from bigraphs.exploration import explore
 from bigraphs.exports import to_html
 from bigraphs.notation import read_system
-from checker import Step, Trace, check
+from checker import Step, Trace, check, replay
 from specs.elaboration import load_mission
-
-AXE = PAGE / "node_modules" / "axe-core" / "axe.min.js"
 
 
 @pytest.fixture(scope="module")
@@ -152,15 +150,45 @@ def test_each_step_of_a_loop_is_reached_folded_and_unfolded_on_desk_and_phone(op
         assert overflow(page) == 0
 
 
+READ = {
+    "look_before_entry_racy": ("race_freedom-stale-observation_race", [("b", 7), ("a", 8), ("b", 12)]),
+    "broken_corridor": ("never_over_the_prison-invariant", [("south", 5)]),
+    "broken_deadlock": (
+        "deadlock_freedom-deadlock",
+        [("corridor", 7), ("first", 11), ("pad", 18), ("second", 22)],
+    ),
+    "broken_endurance": ("endurance-exhausted", [("patrol", 17)]),
+}
+"""The folder of a violation's trace, and who is to blame at which steps, as the page alone says it."""
+
+
 @pytest.mark.parametrize("scheme", ["light", "dark"])
-def test_axe_finds_no_fault_in_the_page_of_a_violation(opened, scheme):
-    if not AXE.exists():
-        pytest.skip("axe-core is not there: `make parts` fetches it")
-    page = opened(violation("broken_crossing", "apart"))
+@pytest.mark.parametrize("name", READ)
+def test_who_did_what_and_when_is_read_from_the_page_alone_as_the_trace_has_it(
+    opened, tmp_path, name, scheme
+):
+    folder, blamed = READ[name]
+    mission = load_mission(name)
+    write_evidence(Checked(name, mission, digest_of(mission), check(mission), False), tmp_path)
+    page = opened((tmp_path / folder / "trace.html").read_text(encoding="utf-8"))
     page.emulate_media(color_scheme=scheme)
-    page.evaluate(f"{AXE.read_text(encoding='utf-8')};0")
-    found = page.evaluate("axe.run(document, { resultTypes: ['violations'] })")
-    assert [(each["id"], each["nodes"][0]["html"]) for each in found["violations"]] == []
+    for size in (TABLET, PHONE, DESK):
+        page.set_viewport_size(size)
+        assert (spilled(page), overflow(page), faults(page)) == ([], 0, []), size
+    told = [each.strip() for each in page.locator(".story li").all_inner_texts()]
+    read = [
+        found.groups()
+        for found in (re.fullmatch(r"(.*) at step (\d+)(?: · (.*))?", each) for each in told)
+        if found
+    ]
+    trace = replay(
+        mission.initial, json.loads((tmp_path / folder / "trace.json").read_text(encoding="utf-8"))
+    )
+    assert [int(step) for _, step, _ in read] == [step for _, step in blamed]
+    for (words, _, date), (who, step) in zip(read, blamed, strict=True):
+        assert trace.steps[step - 1].label.agent == who
+        assert re.search(rf"\b{who}\b", words)
+        assert date == (trace.date(step - 1) if trace.dates else None)
 
 
 def test_without_scripts_the_page_has_its_story_and_its_lanes(browser, tmp_path):

@@ -11,6 +11,7 @@ export const FILES = ".geojson,.json,.plan,.waypoints";
 export class Handles {
   #parts = [];
   #focused = "";
+  #shown = "";
 
   constructor(map, reshape) {
     this.map = map;
@@ -19,6 +20,9 @@ export class Handles {
 
   /** Show the handles of a shape `{shape, points, radius}`; none for null. */
   show(name, shape) {
+    const shown = JSON.stringify([name, shape]);
+    if (shown === this.#shown) return; // a handle that is held stays
+    this.#shown = shown;
     const focused = this.#parts.find((part) => part.getElement?.() === document.activeElement)?.part ?? "";
     this.clear();
     if (!shape) return;
@@ -46,6 +50,7 @@ export class Handles {
   }
 
   #moved({ points, radius }) {
+    this.#shown = ""; // what is refused goes back
     this.reshape(points.map(([north, east]) => [Math.max(-90, Math.min(90, north)), ((east + 540) % 360) - 180]), radius);
   }
 

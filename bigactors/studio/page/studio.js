@@ -235,7 +235,9 @@ class Studio {
   showRun = (name) => {
     const found = this.verdicts.value.report?.properties.find((each) => each.name === name);
     const trace = found && runOf(found);
-    if (trace) this.wanted.set({ trace });
+    if (!trace) return;
+    this.wanted.set({ trace });
+    document.querySelector(".exploring").scrollIntoView({ block: "nearest" }); // on a phone it is below
   };
 
   save = () => {

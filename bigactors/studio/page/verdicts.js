@@ -20,11 +20,13 @@ export function Verdicts({ app }) {
   return html`<section class="verdicts" aria-label="Verdicts">
     <p class=${state === "done" ? "" : "quiet"} role="status">${title}</p>
     ${state === "refused" && html`<pre class="refused">${refused}</pre>`}
-    ${report && state !== "refused" && html`<ul class=${state === "running" ? "old" : ""}>${report.properties.map((each) => html`<${Verdict} key=${each.name} app=${app} about=${each} />`)}</ul>
+    ${report && state !== "refused" && html`<ul class=${state === "running" ? "old" : ""}>${worstFirst(report.properties).map((each) => html`<${Verdict} key=${each.name} app=${app} about=${each} />`)}</ul>
       ${report.coverage?.complete && report.coverage.gaps.length > 0 && html`<p class="late">┆ ${counted(report.coverage.gaps.length, "part")} of the text ${report.coverage.gaps.length === 1 ? "is" : "are"} never reached</p>`}
       ${report.notes.map((note) => html`<p class="quiet" key=${note}>${note}</p>`)}`}
   </section>`;
 }
+
+const worstFirst = (properties) => properties.toSorted((a, b) => (b.verdict === "violated") - (a.verdict === "violated"));
 
 function summaryOf({ complete, bounds, configurations, transitions, seconds }) {
   return `${counted(configurations, "configuration")}, ${counted(transitions, "transition")}${complete ? "" : `, then stopped: ${bounds.join(", ")}`} · ${seconds.toFixed(1)} s`;
@@ -33,7 +35,7 @@ function summaryOf({ complete, bounds, configurations, transitions, seconds }) {
 function Verdict({ app, about }) {
   const { name, verdict, violations, count: times, examined, note, remarks, line } = about;
   const run = runOf(about);
-  const sizes = verdict === "violated" ? counted(times, "violation") : examined ? `examined ${examined.toLocaleString("en")}` : "";
+  const sizes = verdict === "violated" ? times > 0 && counted(times, "violation") : examined ? `examined ${examined.toLocaleString("en")}` : "";
   return html`<li class=${`verdict-${verdict}`}>
     <b class="mark" aria-label=${verdict}>${MARKS[verdict]}</b>
     <div><button type="button" class="name" disabled=${line < 1} onClick=${() => app.editor.goTo(line)}>${name}</button> <span class="quiet">${[sizes, note].filter(Boolean).join(" · ")}</span>

@@ -172,9 +172,10 @@ def replace(page, words, other):
 def drag(page, handle, to):
     """Drag a handle of the map to a point of it; wait until the text and the handles have followed."""
     shapes = "JSON.stringify(studio.shapes.value)"
+    shows(page, handle)
     before = page.evaluate(shapes)
-    box, there = page.locator(handle).bounding_box(), page.locator("#map").bounding_box()
-    page.mouse.move(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
+    there = page.locator("#map").bounding_box()
+    page.hover(handle)  # once it rests: handles are drawn anew with each answer
     page.mouse.down()
     page.mouse.move(there["x"] + to[0], there["y"] + to[1], steps=5)
     page.mouse.up()
@@ -233,6 +234,12 @@ def breaks_a_property_and_mends_it(page, theme):
     says(page, ".unflown", "Fly: everything has to hold first.")
     put_cursor(page, "reachable")
     look_at(page, f"5-violated-{theme}")
+    page.set_viewport_size(PHONE)
+    page.click(".verdicts li >> nth=0 >> text=Show how")
+    expect(page, ".story").to_be_in_viewport(timeout=PATIENCE)
+    page.set_viewport_size(DESK)
+    page.click(".controls [aria-label^=first]")
+    until(page, "studio.shown.value.at === 0")
     page.click(".cm-margin .sign-violated")
     says(page, ".story li >> nth=0", "uav0 moves from field0 to location0, as pilot wants at step 2")
     says(page, ".story li >> nth=1", "not true here: uav0 in field0, uav0 in bay0 after step 2")
