@@ -50,6 +50,7 @@ class Members(NamedTuple):
         footprints: The words of each footprint.
         disturbed: For each pair of footprints, whether one disturbs the other: 0 not computed, 1 no, 2 yes.
         step_actor, step_flags: The actor and the flags of each transition.
+        seen_words: The words of a row that properties read.
         seen_masks: For each word of a row, the bits that properties read.
         seen_whole: For each word of a row, the bits that properties read directly, without a question.
         seen: Columns that properties read through a question, each with the first of its answers in `answers`.
@@ -78,6 +79,7 @@ class Members(NamedTuple):
     disturbed: Any
     step_actor: Ints
     step_flags: Ints
+    seen_words: State
     seen_masks: Words
     seen_whole: Words
     seen: Ints

@@ -68,10 +68,10 @@ from checker.engines.fast.tree_compression import NO_ROOM, FoldedTable, intern, 
 
 
 @inner(cache=True)
-def is_seen(m: LearnedModel, r: Members, here: Words, target: Words, to: int, width: int) -> bool:
+def is_seen(m: LearnedModel, r: Members, here: Words, target: Words, to: int) -> bool:
     """Return whether a proposition may differ between a row and its successor."""
     asked = False
-    for j in range(width):
+    for j in r.seen_words:
         changed = here[j] ^ target[to + j]
         if changed & r.seen_whole[j]:
             return True
@@ -112,10 +112,10 @@ def is_ample(
         if has(r.sets, at, r.whose[k]):
             if r.step_flags[batch.steps[k]] & NAMED:
                 return 0
-            if not make(m, r, f, here, batch, k, state):
-                return UNKNOWN
-            if r.visible[k] == 0:  # visibility concerns the successor, not its representative
-                seen = is_seen(m, r, here, batch.words, k * width, width)
+            if len(r.seen_words) and r.visible[k] == 0:
+                if not make(m, r, f, here, batch, k, state):
+                    return UNKNOWN
+                seen = is_seen(m, r, here, batch.words, k * width)  # of the successor, not its representative
                 r.visible[k] = 2 if seen else 1
             if r.visible[k] == 2:
                 return 0

@@ -115,6 +115,7 @@ class Choosing:
             self.disturbed,
             self.step_actor.room,
             self.step_flags.room,
+            np.flatnonzero(self.seen_masks),
             self.seen_masks,
             self.seen_whole,
             self.seen,

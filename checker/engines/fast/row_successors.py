@@ -8,10 +8,20 @@ from typing import Any
 from checker.engines.fast.actor_tables import MADE, STORED, UNKNOWN, Members
 from checker.engines.fast.decision_leaves import ALIKE, STEP
 from checker.engines.fast.jit_decorators import inner
-from checker.engines.fast.learned_model import KEPT, LIMIT, SIZE, WORDS, LearnedModel, State, SuccessorBatch
-from checker.engines.fast.make_successors import is_repeated, make_plain, put_stored
+from checker.engines.fast.learned_model import (
+    FULL,
+    KEPT,
+    LIMIT,
+    NODE,
+    SIZE,
+    WORDS,
+    LearnedModel,
+    State,
+    SuccessorBatch,
+)
+from checker.engines.fast.make_successors import is_repeated, make_folded, make_plain, put_stored
 from checker.engines.fast.table import Words, hashed
-from checker.engines.fast.tree_compression import UNMET, FoldedTable
+from checker.engines.fast.tree_compression import NO_ROOM, UNMET, FoldedTable
 
 
 @inner(cache=True)
@@ -49,11 +59,17 @@ def make_stored(
 
     Return False at something not learned yet, or without room.
     """
-    if not make(m, r, f, here, batch, k, state):
+    is_plain = f is None or x is not None  # otherwise it is compressed at once, without its words
+    if is_plain and not make(m, r, f, here, batch, k, state):
         return False
     if r.made[k] != STORED:
         width, kept, adding = state[WORDS], state[KEPT], state[SIZE] < state[LIMIT]
-        there = put_stored(m, x, d, f, batch.words, k * width, width, adding, batch.kept, k * kept, state)
+        if is_plain:
+            there = put_stored(m, x, d, f, batch.words, k * width, width, adding, batch.kept, k * kept, state)
+        else:
+            there = make_folded(m, f, batch.steps[k], adding, batch.kept, k * kept, state)
+            if there == NO_ROOM:
+                state[NODE] = FULL
         if there < 0 and there != UNMET:  # beyond the limit, no piece is added
             return False
         batch.hashes[k] = hashed(batch.kept, k * kept, kept)
@@ -82,11 +98,10 @@ def without_repetitions(
     for k in range(count):
         step = batch.steps[k]
         batch.steps[left] = step
-        r.made[left] = r.visible[left] = 0
-        if not make(m, r, f, here, batch, left, state):
+        r.made[left] = 0
+        is_compared = m.steps[STEP * step + ALIKE] >= 0
+        if is_compared and not make(m, r, f, here, batch, left, state):
             return UNKNOWN
-        if m.steps[STEP * step + ALIKE] < 0 or not is_repeated(
-            batch.words, batch.steps, m.steps, 0, left, step, width
-        ):
+        if not is_compared or not is_repeated(batch.words, batch.steps, m.steps, 0, left, step, width):
             left += 1
     return left
