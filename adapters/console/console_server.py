@@ -211,9 +211,10 @@ class PageService(ABC):
                 await answer.prepare(request)
                 await answer.write_eof()
         except TimeoutError:
-            line = request.transport.get_extra_info("socket")
-            line.setsockopt(SOL_SOCKET, SO_LINGER, AT_ONCE)  # else the system keeps the unsent data
-            request.transport.abort()
+            if request.transport is not None:  # it may have left meanwhile
+                line = request.transport.get_extra_info("socket")
+                line.setsockopt(SOL_SOCKET, SO_LINGER, AT_ONCE)  # else the system keeps the unsent data
+                request.transport.abort()
             raise ConnectionResetError from None
 
     def _is_own(self, origin: str | None) -> bool:

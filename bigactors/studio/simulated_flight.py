@@ -38,9 +38,8 @@ def main() -> int:
 
 
 def _end_with_input() -> None:
-    while os.read(
-        sys.stdin.fileno(), 1 << 10
-    ):  # unbuffered: at its exit, Python waits for the lock of a buffer
+    given = sys.stdin.fileno()  # unbuffered: at its exit, Python waits for the lock of a buffer
+    while os.read(given, 1 << 10):
         pass
     os.kill(os.getpid(), signal.SIGTERM)
 
@@ -53,6 +52,7 @@ def _flown(file: str, folder: Path) -> int:
     if code == Exit.VIOLATED:
         raise _unflyable(json.loads(report.read_text("utf-8")))
     if code:
+        sys.stdout.write(said.getvalue())
         return code
     vehicles = [f"--vehicle={name}={COPTER}" for name in _driven(open_mission(file, Variation()))]
     files = [f"--verdict={verdict}", f"--record={folder / RECORDING}", f"--socket={folder / 'run.sock'}"]

@@ -145,6 +145,13 @@ async def test_a_flight_of_a_mission_that_does_not_hold_is_refused_with_the_reme
         assert "gone: not true here: not u in a\n  hint: write the line control timed into the text" in said
 
 
+async def test_a_flight_of_a_text_with_a_mistake_is_refused_with_the_mistake(file):
+    file.write_text(f"{SMALL}wrold {{}}", encoding="utf-8")
+    async with page(file) as (socket, heard):
+        await socket.send_json({"type": "fly", "id": 1})
+        assert "did you mean 'world'" in (await heard("flying"))["refused"]
+
+
 def checks():
     """Return the processes of this machine that check a text, as children of this one."""
     found = set()
