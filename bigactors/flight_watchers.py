@@ -165,12 +165,19 @@ def _flying_on() -> Iterator[None]:
             tell(str(mistake))
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True)
 class Tape(Watcher):
-    """Writes arrivals, reports and turns into a recording."""
+    """Writes arrivals, reports and turns into a recording.
+
+    Attributes:
+        recorder: The recording.
+        resting: The properties that depend on the assumption of a finding.
+        reason: Why the run has ended.
+    """
 
     recorder: Recorder
     resting: Resting
+    reason: str = "the run has ended"
 
     def arrived(self, heard: Heard, now: float) -> None:
         """Record an arrival."""

@@ -144,6 +144,14 @@ def test_a_run_that_is_asked_to_end_closes_its_recording(there, number, shell):
     assert [message.data for message in recording.of("end")] == [{"reason": "interrupted"}]
 
 
+def test_a_recording_ends_with_the_reason_of_its_run(there):
+    (there / "desk.mission").write_text(DESK)
+    assert main(["run", "desk.mission", "--unverified", "--for", "1", "--record", "run.mcap"]) == 3
+    assert [message.data for message in open_recording("run.mcap").of("end")] == [
+        {"reason": "the time is over"}
+    ]
+
+
 def test_a_run_that_is_asked_to_end_before_it_begins_leaves_no_recording(there):
     line = ["run", "oil_spill", UAV, "--unverified", "--record", "run.mcap"]
     with begun([sys.executable, "-m", "bigactors", *line], stderr=subprocess.PIPE, text=True) as run:

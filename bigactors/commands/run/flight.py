@@ -114,6 +114,8 @@ def _run(flight: Flight, options: Namespace) -> Exit:
                 preflight = None if tape is None else tape.preflight
                 flown = fly(flight, tuple(looker for looker in lookers if looker), preflight)
                 ending = asyncio.run(flown) if flight.rate == 1.0 else run_simulated(flown, flight.rate)
+                if tape is not None:
+                    tape.reason = ending.reason
             finally:
                 terminal.ends()
     except (NotAsAssumed, NotHeard, PluginFailed) as error:
@@ -239,18 +241,17 @@ def _published(address: str | None) -> Iterator[RosSending | None]:
 @contextmanager
 def _ending(tape: Tape) -> Iterator[None]:
     """Record the end of the run."""
-    reason = "the run has ended"
     try:
         yield
     except KeyboardInterrupt:
-        reason = "interrupted"
+        tape.reason = "interrupted"
         raise
     except BaseException as error:
-        reason = str(error) or type(error).__name__
+        tape.reason = str(error) or type(error).__name__
         raise
     finally:
         try:
-            tape.recorder.close(reason, time.time())
+            tape.recorder.close(tape.reason, time.time())
         except OSError as error:
             tell(f"the recording has no end: {error.strerror}", f"{error.filename}:")
 
