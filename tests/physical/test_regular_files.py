@@ -65,6 +65,7 @@ OWN = {
     "bigactors/studio/child_process.py",
     "bigactors/studio/exploring.py",
     "bigactors/studio/mission_file.py",
+    "bigactors/studio/simulated_flight.py",
     "bigraphs/examples/__init__.py",
     "bigraphs/exports/html.py",
     "checker/engines/cluster/ray_crew.py",
