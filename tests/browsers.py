@@ -3,6 +3,7 @@
 import shutil
 from contextlib import contextmanager
 from pathlib import Path
+from time import monotonic
 
 import pytest
 
@@ -16,6 +17,17 @@ AXE = Path(__file__).parents[1] / "adapters" / "console" / "page" / "node_module
 
 PATIENCE = 60_000
 """Milliseconds in which whatever a test waits for comes, on the busiest machine."""
+
+
+def until(page, true, value=None, patience=PATIENCE):
+    """Wait until a script says so.
+
+    Playwright's own waiting evaluates the script in the page, which our pages' policy forbids, unless it is true at once.
+    """
+    end = monotonic() + patience / 1000
+    while not page.evaluate(true, value):
+        assert monotonic() < end, f"not true in time: {true}"
+        page.wait_for_timeout(50)
 
 
 def playwright():

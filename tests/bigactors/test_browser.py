@@ -5,7 +5,7 @@ import re
 from io import BytesIO
 
 import pytest
-from browsers import DESK, PHONE, TABLET, Watch, chromium, faults, overflow, says, spilled
+from browsers import DESK, PHONE, TABLET, Watch, chromium, faults, overflow, says, spilled, until
 from drawn_missions import observing, oil_spill, run
 from PIL import Image, ImageStat
 
@@ -243,7 +243,7 @@ def enlarges_by_the_wheel(page):
     page.locator('[data-state="0"]').hover()
     page.mouse.wheel(0, -300)
     width = f"document.querySelector({FIRST!r}).getBoundingClientRect().width"
-    page.wait_for_function(f"before => {width} > 1.5 * before", arg=before)
+    until(page, f"before => {width} > 1.5 * before", before)
 
 
 def goes_to_a_state_and_along_a_way_to_it(page):

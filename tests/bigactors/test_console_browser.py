@@ -4,7 +4,7 @@ import socket
 from contextlib import contextmanager
 
 import pytest
-from browsers import DESK, PATIENCE, Watch, chromium
+from browsers import DESK, PATIENCE, Watch, chromium, until
 from consoles import begun, free_port, link_of
 
 from adapters.recording.recording_reader import read_recording
@@ -158,7 +158,7 @@ ALL_READ = f"{COUNTS}.filter((each) => each > 0).length === 5"
 def plays_the_recording(page):
     has(page, ".role", "you watch")
     assert page.locator(".held").count() == 0
-    page.wait_for_function(ALL_READ)
+    until(page, ALL_READ)
     page.locator("#speed").select_option("100")
     has(page, ".badge", "ENDED")
     page.locator("input[type=range]").focus()

@@ -11,7 +11,7 @@ from contextlib import ExitStack, contextmanager
 from pathlib import Path
 
 import pytest
-from browsers import DESK, PATIENCE, PHONE, Watch, chromium, overflow
+from browsers import DESK, PATIENCE, PHONE, Watch, chromium, overflow, until
 from consoles import begun, free_port, link_of
 
 from bigactors.cli import main
@@ -137,7 +137,7 @@ class Operator:
         self.page.locator(selector, has_text=text).first.wait_for()
 
     def is_titled(self, text):
-        self.page.wait_for_function("text => document.title.includes(text)", arg=text)
+        until(self.page, "text => document.title.includes(text)", text, 3 * PATIENCE)
 
     def presses(self, label):
         """Press a button until it has acted, after a second."""
@@ -289,7 +289,7 @@ def sees_how_long_a_link_is_lost_and_that_it_comes_back(ana, folder):
     ana.sees(".alert .consequence", "it is heard again")
     ana.acknowledges("nothing was heard of uav0")
     ana.acknowledges("uav0: is not on control:gcs0")
-    ana.page.wait_for_function("!document.title.startsWith('(')")
+    until(ana.page, "!document.title.startsWith('(')", patience=3 * PATIENCE)
 
 
 def sees_why_another_flies_home_and_what_follows(ana, folder):

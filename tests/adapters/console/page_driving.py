@@ -7,7 +7,7 @@ none, and a short press is short on the busiest machine.
 import json
 from contextlib import contextmanager
 
-from browsers import PATIENCE, playwright
+from browsers import PATIENCE, playwright, until
 
 HOLD = ".card [aria-label^='Hold uav0']"
 SAY = ".sayings button"
@@ -78,7 +78,7 @@ class Operator:
 
     def sees_that(self, true, value=None):
         """Wait until a script says so."""
-        self.page.wait_for_function(true, arg=value)
+        until(self.page, true, value)
 
     def count(self, selector):
         return self.page.locator(selector).count()

@@ -31,7 +31,7 @@ def moved(entities, tick):
 def test_a_fleet_among_ships_moves_smoothly(operates, capsys):
     state = world() | crowd(VEHICLES, VEHICLES + TARGETS)
     ana = operates(state)
-    ana.page.wait_for_function("document.querySelectorAll('.leaflet-container').length === 1")
+    ana.sees_that("document.querySelectorAll('.leaflet-container').length === 1")
     before, after = ana.page.evaluate(FRAMES, SECONDS), None
     ended = threading.Event()
 

@@ -8,7 +8,7 @@ from pathlib import Path
 from urllib.parse import urlsplit
 
 import pytest
-from browsers import Watch, says
+from browsers import Watch, says, until
 from console_clients import console
 from page_harness import PAGE
 from PIL import Image
@@ -114,7 +114,7 @@ def is_chosen_by_a_click_and_nothing_by_a_click_beside(chart):
     chart.evaluate("heard.selected.length = 0")
     chart.mouse.click(x, y)
     chart.mouse.click(x + 200, y)
-    chart.wait_for_function("heard.selected.length === 2")
+    until(chart, "heard.selected.length === 2")
     assert chart.evaluate("heard.selected") == ["uav0", None]
 
 
