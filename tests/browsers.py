@@ -22,7 +22,7 @@ PATIENCE = 60_000
 def until(page, true, value=None, patience=PATIENCE):
     """Wait until a script says so.
 
-    Playwright's own waiting evaluates the script in the page, which our pages' policy forbids, unless it is true at once.
+    Playwright's own waiting evaluates the script in the page, which our pages forbid, unless it is true at once.
     """
     end = monotonic() + patience / 1000
     while not page.evaluate(true, value):
