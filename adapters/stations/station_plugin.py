@@ -363,11 +363,11 @@ class Sharing(Watcher):
         except ValueError as error:
             self._troubles.note("unreadable message", f"from {station}: {error!s:.200}")
             return None
-        self.others[station].begun = message.begun
         if message.mission != self._digest:
             detail = f"{station} flies another mission, or another version of it: give all the same"
             self._troubles.note("another mission", detail)
             return None
+        self.others[station].begun = message.begun
         return message
 
     def _take_all(self, station: str, entries: Sequence[Any]) -> bool:

@@ -42,10 +42,10 @@ SAID_BY_MESSAGE: Final = frozenset({"late", "exhausted", "time stops", "diverges
 """The kinds of violations whose message is a plain sentence about the end of the run."""
 
 SAID_BY_DETAILS: Final = frozenset({"invariant", "inconsistent", "unmatched", "unrealisable"})
-"""The kinds of violations whose details are."""
+"""The kinds of violations with details in plain sentences."""
 
 MOST_TRUTHS: Final = 4
-"""The most atoms of an invariant whose truth is told."""
+"""The most atoms of an invariant in its explanation."""
 
 MOST_ATOMS: Final = 64
 MOST_STEPS: Final = 2_000
@@ -128,9 +128,9 @@ def _details(trace: Trace, violation: Violation, formulas: tuple[Proposition, ..
     if found:
         return "; ".join(found)
     end, atoms = trace.configurations[-1], dict.fromkeys(atom for each in formulas for atom in atoms_of(each))
-    told = {True: "true", False: "not true"} if len(atoms) <= MOST_TRUTHS else {}
+    values = {True: "true", False: "not true"} if len(atoms) <= MOST_TRUTHS else {}
     truths = [
-        (words, [str(each) for each in atoms if holds(each, end) is value]) for value, words in told.items()
+        (words, [str(each) for each in atoms if holds(each, end) is value]) for value, words in values.items()
     ]
     return "; ".join(f"{words} here: {', '.join(those)}" for words, those in truths if those)
 

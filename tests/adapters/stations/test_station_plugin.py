@@ -368,6 +368,7 @@ async def test_who_flies_another_mission_is_not_listened_to(tmp_path):
         gcs1.see("boat0", EAST)
         await until(lambda: "another mission: gcs1 flies another mission" in gcs0.world.troubles())
         assert gcs0.world.at("boat0") is None
+        assert gcs0.sharing.others["gcs1"].begun is None
 
 
 async def test_a_port_in_use_is_said(tmp_path):
