@@ -49,9 +49,9 @@ class Compilation(NamedTuple):
 
             return leave
         if Reduction.POR in self.reductions:
-            from checker.engines.fast.ample_kernel import expand_reduced  # noqa: PLC0415 - the same
+            from checker.engines.fast.chosen_rows import store_chosen  # noqa: PLC0415 - the same
 
-            return expand_reduced
+            return store_chosen
         from checker.engines.fast.kernel import gather  # noqa: PLC0415 - the same
 
         return gather

@@ -119,7 +119,6 @@ UNSUPPORTED: Final = (
         "ways are compared in every configuration, and 'por' leaves configurations out", _REDUCE),
     _P(_F.WAYS, _F.SYMMETRY, _W.MATHEMATICS,
         "ways are those of each vehicle, and 'symmetry' visits one of several alike", _REDUCE),
-    _P(_F.THREADS, _F.POR, _W.IDLE, "the cycle proviso is decided row by row, on one thread", ""),
     _P(_F.THREADS, _F.TIMING, _W.IDLE, "the search runs on one thread", ""),
     _P(_F.RUNS, _F.POR, _W.UNDECIDED, "X, enabled, fairness and progress depend on the order of "
         "independent steps (docs/explanation/reduction.md)", _REDUCE),

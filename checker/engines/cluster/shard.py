@@ -24,10 +24,10 @@ from checker.engines.fast.columns import WORD, Packing, shifts
 from checker.engines.fast.effects import Deeper, Varies
 from checker.engines.fast.expander import Expander
 from checker.engines.fast.kernel import count as count_steps
-from checker.engines.fast.learned_model import AT, EXPANDED, SIZE, SuccessorBatch
+from checker.engines.fast.learned_model import AT, EXPANDED, SIFTED, SIZE, SuccessorBatch
 from checker.engines.fast.learner import Learner
 from checker.engines.fast.origins import Elsewhere
-from checker.engines.fast.row_search import choosing, exchanging
+from checker.engines.fast.row_search import choosing, chosen_steps, exchanging
 from checker.engines.fast.row_store import FIRST_ROWS, RowFormat, RowStore
 from checker.engines.fast.row_survey import RowSurvey
 from checker.engines.fast.rule_model import RuleModel
@@ -148,7 +148,7 @@ class Shard:
         choosing: What chooses ample sets; None without partial-order reduction.
         paths: With it, the paths of its cycle proviso.
         round: With it, the rows of this round.
-        tried: A batch for the steps of one row.
+        steps: With it, the steps of ample sets.
         answers: The places of the rows last received from each worker.
         outbox: The successors that wait for sending.
         begins: The first row of each layer, up to the one in expansion.
@@ -171,12 +171,13 @@ class Shard:
         self.reduce = reduce
         self.me = me
         self.workers = workers
-        self.sent, self.shape = 0, (0, 0, 0)
+        self.sent = 0
         learner = Learner(initial.setting, initial.state, pending)  # type: ignore[arg-type]  # a stored one
         self.choosing = choosing(learner, reduce)
         self.store = RowStore(form=RowFormat(Elsewhere, compressible=self.choosing is None, travels=True))
         self.model = RuleModel(learner, self.store, exchanging(learner, reduce, ahead=False))
         self.expander = Expander(self.model, self.choosing)
+        self.steps = chosen_steps(self.expander, self.choosing)
         self.paths = DividedPaths(me, workers)
         self.round: ReducedRound | None = None
         self.keys = Keys(learner.columns)
@@ -237,8 +238,6 @@ class Shard:
     def _see(self) -> None:
         """Keep up with the model, and with the packing of the rows."""
         self.keys.refresh()
-        if self.choosing is not None and self.shape != self.expander.shape:
-            self.shape, self.tried = self.expander.shape, self.expander.new_batch(self.expander.successors)
         where = self.store.packing
         if self.located_in is where:
             return
@@ -266,9 +265,8 @@ class Shard:
         if self.choosing is None:
             self._expand([rows], self.expander.gather)
         else:
-            self.choosing.paths.end = self.end
             self.round = ReducedRound(rows, np.zeros(len(rows), np.bool_))
-            self._expand([rows], self._gather_reduced)
+            self._expand_reduced(self.round)
         self.store.state[EXPANDED] = rows.stop
         return self.parcels()
 
@@ -283,9 +281,13 @@ class Shard:
                 if not known or state[AT] < rows.stop:
                     self._deal()
                 if not known:
-                    self.learned.add(int(state[AT]))
-                    self.expander.learn()
+                    self._learn()
         self._deal()
+
+    def _learn(self) -> None:
+        """Learn what gathering lacked at a row."""
+        self.learned.add(int(self.store.state[AT]))
+        self.expander.learn()
 
     def enter(self, layer: int) -> None:
         """Begin a layer, unless it has begun."""
@@ -296,10 +298,10 @@ class Shard:
     def _deal(self) -> None:
         """Store the batch's rows of this worker, and put the others into the outbox."""
         store, expander = self.store, self.expander
-        if self.round is not None:
-            self._deal_reduced(self.round)
-            return
         batch, count = expander.batch, expander.gathered()
+        if self.round is not None:
+            self._deal_reduced(self.round, batch, count)
+            return
         chosen, owners = np.zeros(count, np.int64), np.zeros(count, np.int32)
         found = kernel.deal(
             *store.arrays,
@@ -335,32 +337,32 @@ class Shard:
         rows = batch.kept.reshape(-1, self.store.packing.words)[which]
         origins: NDArray[Any] = batch.origins[which].astype(np.uint32)
         if self.choosing is not None:
-            origins = origins | self.choosing.movers[batch.steps[which]].astype(np.uint64) << HALF
+            origins = origins | self.choosing.movers.room[batch.steps[which]].astype(np.uint64) << HALF
         self.outbox.add(rows, origins, owners)
 
     # --- partial-order reduction ----------------------------------------------------------------------------------
 
-    def _gather_reduced(self, until: int) -> bool:
-        """Gather successors by ample sets; return False at something not learned yet."""
-        from checker.engines.fast.ample_kernel import gather_reduced  # noqa: PLC0415  # compiled only for a reduction
+    def _expand_reduced(self, found: ReducedRound) -> None:
+        """Expand the rows of a round by ample sets, learning on the way."""
+        assert self.steps is not None
+        state, rows = self.store.state, found.rows
+        state[AT] = rows.start
+        while state[AT] < rows.stop:
+            self.store.make_room(self.expander.successors)
+            begin = int(state[AT])
+            known, batch, is_reduced = self.steps.gather_divided(rows.stop, self.end)
+            found.reduced[begin - rows.start : int(state[AT]) - rows.start] = is_reduced
+            self._deal_reduced(found, batch, int(state[SIFTED]))
+            if not known:
+                self._learn()
 
-        store, expander, model, choosing = self.store, self.expander, self.model, self.choosing
-        assert choosing is not None
-        assert self.round is not None
-        choosing.paths.reserve(store.rows.room)
-        known = (model.loops, choosing.members, *model.symmetry, choosing.paths.trails)
-        stored = (store.rows.words, store.rows.folded, store.table.room, self.tried, expander.batch)
-        counted = (self.round.reduced, self.round.rows.start, until, expander.met.room, store.state)
-        return bool(gather_reduced(*known, *stored, *counted))
-
-    def _deal_reduced(self, found: ReducedRound) -> None:
+    def _deal_reduced(self, found: ReducedRound, batch: SuccessorBatch, count: int) -> None:
         """Store the batch's rows of this worker, and put all others into the outbox: their workers answer for them."""
-        batch, count = self.expander.batch, self.expander.gathered()
         count_steps(batch.steps, 0, count, self.expander.counts.room)
         owners, places = self.owners_of(batch.kept, batch.origins[:count]), np.zeros(count, np.int64)
         mine, others = np.flatnonzero(owners == self.me), np.flatnonzero(owners != self.me)
         assert self.choosing is not None
-        places[mine] = self._store(batch, mine, self.choosing.movers[batch.steps[mine]])
+        places[mine] = self._store(batch, mine, self.choosing.movers.room[batch.steps[mine]])
         followed = (
             batch.origins[:count].copy(),
             batch.steps[:count].astype(np.int64),

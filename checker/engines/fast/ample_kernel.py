@@ -29,18 +29,16 @@ from checker.engines.fast.actor_tables import (
     meet,
 )
 from checker.engines.fast.bits import WORD, add, has
+from checker.engines.fast.chosen_rows import ENDS, Chosen, leads_away
 from checker.engines.fast.jit_decorators import inner, njit
-from checker.engines.fast.kernel import add_row
+from checker.engines.fast.kernel import put_off
 from checker.engines.fast.learned_model import (
     AT,
     CROWDED,
     CROWDS,
-    EXPANDED,
-    FULL,
     GATHERED,
     KEPT,
-    NODE,
-    SIZE,
+    SIFTED,
     WORDS,
     LearnedModel,
     State,
@@ -50,21 +48,10 @@ from checker.engines.fast.learned_model import (
 )
 from checker.engines.fast.learned_model import UNKNOWN as NOT_LEARNED
 from checker.engines.fast.persistent import find_set
-from checker.engines.fast.proviso_paths import (
-    FORWARD,
-    NOWHERE,
-    SINGLE,
-    Trails,
-    begin_row,
-    end_of,
-    end_row,
-    has_room,
-    lead_on,
-    store_transition,
-)
+from checker.engines.fast.proviso_paths import AT_ITS_TURN, FORWARD, SINGLE, Trails
 from checker.engines.fast.row_successors import make, make_stored, without_repetitions
-from checker.engines.fast.table import Words, bits_for, entry_of, find
-from checker.engines.fast.tree_compression import NO_ROOM, FoldedTable, intern, unfold
+from checker.engines.fast.table import Words
+from checker.engines.fast.tree_compression import FoldedTable, unfold
 
 
 @inner(cache=True)
@@ -176,15 +163,13 @@ def join(
 ) -> int:
     """Add a set if it is ample and has an ignored actor (cycle proviso).
 
-    If all steps must lead forward, the set is added only if they do, and no other joins it. In a divided search (with
-    `trails.end`) this is only assumed, and the workers see to it together afterwards.
+    If all steps must lead forward, the set is added only if they do, and no other joins it.
 
     Returns:
-        A transition of the set whose successor's path does not return to this row. If there is none: NOBODY_LEFT if no
+        A transition of the set that leads away from this row (see `leads_away`). If there is none: NOBODY_LEFT if no
         enabled actor is ignored any more, else GOING_ON. UNKNOWN if something is not learned yet.
     """
-    kept, row, wide = state[KEPT], state[AT], (actors + WORD - 1) // WORD
-    most = trails.end or row + 1
+    row, wide = state[AT], (actors + WORD - 1) // WORD
     if not ignores(r, r.sets, at, wide):
         return GOING_ON
     ample = is_ample(m, r, f, here, batch, count, at, state)
@@ -193,24 +178,15 @@ def join(
     forward = trails.asked & FORWARD
     if not forward:
         let_join(r, actors, wide, at)
-    bits = np.uint32(bits_for(len(table)))
     for k in range(count):
         if has(r.sets, at, r.whose[k]):
-            if not make_stored(m, r, x, d, f, here, batch, k, state):
+            if not make_stored(m, r, x, d, trails.end == AT_ITS_TURN, f, here, batch, k, state):
                 return UNKNOWN
-            number = find(words, table, batch.kept, k, batch.hashes[k], kept, bits)
-            if forward:
-                if 0 <= number < most:
-                    return GOING_ON
-                continue
-            if number < 0 or trails.end:
+            away = leads_away(x, trails, words, table, batch, k, row, r.taken, state)
+            if forward and not away:
+                return GOING_ON
+            if away and not forward:
                 return k
-            r.more[:] = np.uint64(0)
-            if end_of(trails, number, r.more) != row:
-                return k
-            if x is None:  # an exchange renames actors along the path
-                for word in range(len(r.taken)):
-                    r.taken[word] |= r.more[word]
     if forward:
         let_join(r, actors, wide, at)
         return NOBODY_LEFT
@@ -293,59 +269,32 @@ def choose(
     return EVERYBODY
 
 
-@inner(cache=True)
-def list_chosen(
-    m: LearnedModel,
-    r: Members,
-    x: Any,
-    d: Any,
-    trails: Trails,
-    f: FoldedTable | None,
-    here: Words,
-    words: Words,
-    table: Any,
-    batch: SuccessorBatch,
-    state: State,
-) -> tuple[int, int]:
-    """List the steps of a row and choose some; return the number of steps, and what `choose` returns."""
-    count, onward = list_steps(m, here, 0, batch, 0, state), np.int64(EVERYBODY)
-    if count == NOT_LEARNED:
-        return np.int64(0), np.int64(UNKNOWN)
-    if count == CROWDED:
-        state[CROWDS] += 1
-        count = np.int64(0)
-    if count:
-        count = without_repetitions(m, r, f, here, batch, count, state)
-    if count == UNKNOWN:
-        return np.int64(0), np.int64(UNKNOWN)
-    if count:
-        onward = np.int64(choose(m, r, x, d, trails, f, here, words, table, batch, count, state))
-    return np.int64(count), onward
-
-
-@inner(cache=True)
-def make_chosen(
-    m: LearnedModel,
-    r: Members,
-    x: Any,
-    d: Any,
-    f: FoldedTable | None,
-    here: Words,
-    batch: SuccessorBatch,
-    count: int,
-    onward: int,
-    state: State,
-) -> bool:
-    """Make the successors to follow; return False at something not learned yet."""
+@njit(cache=True, forceinline=True)
+def note_row(
+    r: Members, batch: SuccessorBatch, count: int, onward: int, chosen: Chosen, i: int, state: State
+) -> None:
+    """Note the transitions of a row and the chosen successors, after those of the rows before it."""
+    into, kept = chosen.into, state[KEPT]
     for k in range(count):
-        is_followed = onward == EVERYBODY or has(r.inside, 0, r.whose[k])
-        if is_followed and not make_stored(m, r, x, d, f, here, batch, k, state):
-            return False
-    return True
+        into.steps[state[GATHERED] + k] = batch.steps[k]
+        if k == onward:
+            chosen.onward[i] = state[SIFTED]
+        if onward == EVERYBODY or has(r.inside, 0, r.whose[k]):
+            to = state[SIFTED]
+            for j in range(kept):
+                into.kept[to * kept + j] = batch.kept[k * kept + j]
+            into.hashes[to], into.origins[to], chosen.steps[to] = batch.hashes[k], state[AT], batch.steps[k]
+            state[SIFTED] = to + 1
+    state[GATHERED] += count
+    if onward < 0:
+        chosen.onward[i] = onward
+    else:
+        for word in range(len(r.taken)):
+            chosen.taken[i * len(r.taken) + word] = r.taken[word]
 
 
-@njit(cache=True)
-def gather_reduced(
+@njit(cache=True, nogil=True)
+def gather_chosen(
     m: LearnedModel,
     r: Members,
     x: Any,
@@ -355,112 +304,48 @@ def gather_reduced(
     f: FoldedTable | None,
     table: Any,
     batch: SuccessorBatch,
-    into: SuccessorBatch,
-    reduced: Any,
+    chosen: Chosen,
     begin: int,
     until: int,
-    met: State,
     state: State,
 ) -> bool:
-    """Gather successors by ample sets in a batch, until row `until` or until half of it is full.
+    """Gather the successors of rows by ample sets, until row `until` or until half of the room is used.
 
-    A successor that is not stored here counts as one of the next layer. `reduced` notes, for each row from `begin` on,
-    whether some step is left out.
+    `batch` has room for all successors of one row. `chosen` has rows from `begin` on. A row that is crowded or not
+    fully learned is deferred, if there is room for that.
 
     Returns:
         False if the next row needs something not learned yet.
     """
-    kept = state[KEPT]
-    while state[AT] < until and state[GATHERED] <= len(into.steps) // 2:
+    kept, into, known = state[KEPT], chosen.into, True
+    while known and state[AT] < until and state[GATHERED] <= len(into.steps) // 2:
         row = state[AT]
         here = words[row * kept : (row + 1) * kept]
         if f is not None:
             unfold(f, words, row)
             here = f.whole
-        count, onward = list_chosen(m, r, x, d, trails, f, here, words, table, batch, state)
-        if onward == NOBODY_LEFT and not trails.asked & FORWARD:
-            onward = np.int64(EVERYBODY)
-        if onward == UNKNOWN or not make_chosen(m, r, x, d, f, here, batch, count, onward, state):
-            return False
-        if state[GATHERED] + count > len(into.steps):
+        count, onward = list_steps(m, here, 0, batch, 0, state), np.int64(EVERYBODY)
+        if count == CROWDED:
+            if len(into.later):
+                count = np.int64(NOT_LEARNED)  # counted at its final expansion
+            else:
+                state[CROWDS] += 1
+                count = np.int64(0)
+        if count > 0:
+            count = without_repetitions(m, r, f, here, batch, count, state)
+        if count > 0:
+            onward = np.int64(choose(m, r, x, d, trails, f, here, words, table, batch, count, state))
+        known = count >= 0 and onward != UNKNOWN
+        for k in range(count):
+            if known and (onward == EVERYBODY or has(r.inside, 0, r.whose[k])):
+                known = make_stored(m, r, x, d, trails.end == AT_ITS_TURN, f, here, batch, k, state)
+        if known and state[GATHERED] + count > len(into.steps):
             break
-        reduced[row - begin] = onward != EVERYBODY
-        for k in range(count):
-            met[batch.steps[k]] += 1
-            if onward == EVERYBODY or has(r.inside, 0, r.whose[k]):
-                to = state[GATHERED]
-                for j in range(kept):
-                    into.kept[to * kept + j] = batch.kept[k * kept + j]
-                into.hashes[to], into.origins[to], into.steps[to] = batch.hashes[k], row, batch.steps[k]
-                state[GATHERED] = to + 1
-        state[AT] += 1
-    return True
-
-
-@njit(cache=True)
-def expand_reduced(
-    m: LearnedModel,
-    r: Members,
-    x: Any,
-    d: Any,
-    trails: Trails,
-    words: Words,
-    f: FoldedTable | None,
-    origins: Any,
-    table: Any,
-    batch: SuccessorBatch,
-    until: int,
-    room: int,
-    met: State,
-    counts: State,
-    state: State,
-) -> bool:
-    """Expand rows with ample sets, until row `until` or until `room` rows might be exceeded.
-
-    With symmetry reduction (`x` and `d` of `sorting`, else None), each successor is replaced by its canonical
-    representative. `met` counts every transition, `counts` those that are followed.
-
-    Returns:
-        False if the next row needs something not learned yet, or more room; nothing of that row is then stored.
-    """
-    kept = state[KEPT]
-    bits = np.uint32(bits_for(len(table)))
-    while state[AT] < until and state[SIZE] + len(batch.steps) <= room and has_room(trails, len(batch.steps)):
-        row = state[AT]
-        begin_row(trails, row)
-        here = words[row * kept : (row + 1) * kept]
-        if f is not None:
-            unfold(f, words, row)
-            here = f.whole
-        count, onward = list_chosen(m, r, x, d, trails, f, here, words, table, batch, state)
-        known, path = onward != UNKNOWN, np.int64(0)
-        if onward >= 0:
-            path = intern(trails.sets, r.taken, True)
-            if path == NO_ROOM:
-                state[NODE] = FULL
-                known = False
-        if not known or not make_chosen(m, r, x, d, f, here, batch, count, onward, state):
-            return False
-        for k in range(count):
-            step = batch.steps[k]
-            met[step] += 1
-            if onward != EVERYBODY and not has(r.inside, 0, r.whose[k]):
-                continue
-            counts[step] += 1
-            number = find(words, table, batch.kept, k, batch.hashes[k], kept, bits)
-            if number < 0:
-                slot, number = -number - 1, np.int64(state[SIZE])
-                entry = entry_of(batch.hashes[k], number, bits)
-                add_row(words, origins, table, slot, entry, batch.kept, k, row, state)
-                if number == state[SIZE]:  # the limit left it out
-                    store_transition(trails, step, NOWHERE)
-                    continue
-                agent = np.int64(r.part[r.step_actor[step]]) // KINDS
-                trails.movers[number] = agent + 1 if agent < r.agents else 0
-            store_transition(trails, step, number)
-            if k == onward:
-                lead_on(trails, row, number, path)
-        end_row(trails, row)
-        state[AT] += 1
-        state[EXPANDED] = state[AT]
-    return True
+        if known:
+            note_row(r, batch, count, onward, chosen, row - begin, state)
+        else:
+            known = put_off(into.later, row, state[SIFTED], state)
+        ends = ENDS * (row - begin)
+        chosen.ends[ends], chosen.ends[ends + 1] = state[GATHERED], state[SIFTED]
+        state[AT] += known
+    return known

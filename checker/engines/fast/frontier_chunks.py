@@ -1,9 +1,19 @@
-"""Chunks of the frontier, expanded ahead of the stored rows with the trees known at their start."""
+"""Chunks of the frontier, expanded ahead of the stored rows with the tables known at their start."""
+
+from typing import Any, Protocol
 
 from checker.engines.fast import kernel
 from checker.engines.fast.expander import Expander
-from checker.engines.fast.learned_model import AT, GATHERED, PUT_OFF, SEEN, SIFTED, SuccessorBatch
-from checker.engines.fast.pipeline import Pipeline, RowChunk
+from checker.engines.fast.learned_model import (
+    AT,
+    GATHERED,
+    PUT_OFF,
+    SEEN,
+    SIFTED,
+    LearnedModel,
+    SuccessorBatch,
+)
+from checker.engines.fast.pipeline import ChunkMark, Pipeline, RowChunk
 
 FEW = 1 << 6
 """The number of rows of the first chunk, and of the next one after results ahead were void."""
@@ -12,11 +22,73 @@ LATER_ROWS = 1 << 10
 """The greatest number of deferred rows in a chunk."""
 
 
+class ChunkSteps(Protocol):
+    """The steps that are followed from the rows of a chunk: all of them (`AllSteps`), or some (`ChosenSteps`)."""
+
+    def tables(self, *, is_alone: bool) -> Any:
+        """Return the learned tables, as copies unless this thread is alone: learning changes them."""
+
+    def new_batch(self) -> Any:
+        """Return an empty batch for the results of a chunk."""
+
+    def gather(self, part: RowChunk) -> None:
+        """Gather the successors of a chunk's rows, in any thread."""
+
+    def sift(self, part: RowChunk) -> None:
+        """Drop successors that are stored rows, in any thread."""
+
+    def add(self, part: RowChunk, begin: ChunkMark, end: ChunkMark) -> None:
+        """Store part of a chunk, as long as it is not void."""
+
+    def expand_next(self) -> None:
+        """Expand the next row at its turn, or learn what that lacks."""
+
+
+class AllSteps:
+    """All steps of the rows."""
+
+    def __init__(self, expander: Expander) -> None:
+        self.expander = expander
+        self.store = expander.store
+
+    def tables(self, *, is_alone: bool) -> tuple[LearnedModel, Any]:
+        """Return the learned tables, as copies unless this thread is alone: learning changes them."""
+        model = self.expander.model
+        return (model.loops, model.symmetry[0]) if is_alone else model.snapshot()
+
+    def new_batch(self) -> SuccessorBatch:
+        """Return an empty batch."""
+        return self.expander.new_batch(later=LATER_ROWS)
+
+    def gather(self, part: RowChunk) -> None:
+        """Gather the successors of a chunk's rows, in any thread."""
+        rows = self.store.rows
+        (model, exchanges), desk = part.tables, self.expander.model.symmetry[1]
+        kernel.gather(model, exchanges, desk, rows.words, rows.shown, part.batch, part.state, part.end)
+        if rows.shown is None:
+            kernel.drop_repeated(part.batch, part.state)
+        else:  # a look-up takes no longer than this check
+            part.state[SIFTED] = part.state[GATHERED]
+
+    def sift(self, part: RowChunk) -> None:
+        """Drop the successors of a chunk that are stored rows."""
+        part.state[SEEN] = self.store.shown
+        kernel.sift(self.store.rows.words, self.store.table.room, part.batch, part.state)
+
+    def add(self, part: RowChunk, begin: ChunkMark, end: ChunkMark) -> None:
+        """Store part of a chunk."""
+        self.expander.add(part.batch, (begin.steps, end.steps), (begin.found, end.found), end.row)
+
+    def expand_next(self) -> None:
+        """Expand the next row at its turn, or learn what that lacks."""
+        self.expander.expand(self.store.expanded + 1)
+
+
 class FrontierChunks:
     """The chunks that are ahead: any thread expands and sifts them, this thread stores them.
 
     Attributes:
-        expander: Stores their results and learns missing rules.
+        steps: Gathers the successors of their rows, stores them and learns missing rules.
         pipeline: Runs them.
         pace: The number of rows of the next chunk, if their successors fit its batch.
         breadth: The number of successors for each row of the last chunk.
@@ -24,12 +96,13 @@ class FrontierChunks:
         shape: The shape of these batches.
     """
 
-    def __init__(self, expander: Expander, threads: int) -> None:
+    def __init__(self, expander: Expander, steps: ChunkSteps, threads: int) -> None:
         self.expander = expander
+        self.steps = steps
         self.store = expander.store
-        self.pipeline = self.store.readers = Pipeline(threads, self._expand, self._sift)
+        self.pipeline = self.store.readers = Pipeline(threads, steps.gather, steps.sift)
         self.pace, self.breadth = FEW, 1.0
-        self.spare: list[SuccessorBatch] = []
+        self.spare: list[Any] = []
         self.shape = expander.shape
 
     def advance(self, end: int) -> None:
@@ -53,51 +126,35 @@ class FrontierChunks:
         return pipeline.take()
 
     def _chunk(self, begin: int, end: int) -> RowChunk:
-        """Return rows as a chunk, with the trees known now."""
-        model, store = self.expander.model, self.store
-        is_alone = self.pipeline.threads == 1
-        tables, exchanges = (model.loops, model.symmetry[0]) if is_alone else model.snapshot()
+        """Return rows as a chunk, with the tables known now."""
+        store = self.store
+        tables = self.steps.tables(is_alone=self.pipeline.threads == 1)
         store.show()
         state = store.state.copy()
-        state[[AT, GATHERED, PUT_OFF]] = begin, 0, 0
-        return RowChunk(begin, end, model.epoch, tables, exchanges, self._batch(), state)
+        state[[AT, GATHERED, SIFTED, PUT_OFF]] = begin, 0, 0, 0
+        batch = self._batch()
+        return RowChunk(begin, end, self.expander.model.epoch, self.shape, tables, batch, state)
 
-    def _batch(self) -> SuccessorBatch:
+    def _batch(self) -> Any:
         """Return an empty batch."""
         if self.shape != self.expander.shape:
             self.spare.clear()
             self.shape = self.expander.shape
-        return self.spare.pop() if self.spare else self.expander.new_batch(later=LATER_ROWS)
-
-    def _expand(self, part: RowChunk) -> None:
-        """Expand a chunk, in any thread."""
-        rows = self.store.rows
-        folded, desk = rows.shown, self.expander.model.symmetry[1]
-        kernel.gather(part.model, part.exchanges, desk, rows.words, folded, part.batch, part.state, part.end)
-        if folded is None:
-            kernel.drop_repeated(part.batch, part.state)
-        else:  # a look-up takes no longer than this check
-            part.state[SIFTED] = part.state[GATHERED]
-
-    def _sift(self, part: RowChunk) -> None:
-        """Drop the successors of a chunk that are stored rows."""
-        part.state[SEEN] = self.store.shown
-        kernel.sift(self.store.rows.words, self.store.table.room, part.batch, part.state)
+        return self.spare.pop() if self.spare else self.steps.new_batch()
 
     def _commit(self, part: RowChunk) -> None:
         """Store the results of a chunk; deferred rows are expanded at their turn."""
-        expander, steps, found = self.expander, 0, 0
-        for row, steps_before, found_before in part.put_off():
-            expander.add(part.batch, (steps, steps_before), (found, found_before), row)
-            steps, found = steps_before, found_before
-            while self.store.expanded == row:
-                expander.expand(row + 1)
-            if expander.model.epoch != part.epoch:
+        model, store, done, stop = self.expander.model, self.store, ChunkMark(part.begin), part.stop
+        for mark in (*part.put_off(), stop):
+            self.steps.add(part, done, mark)
+            done = mark
+            while mark is not stop and store.expanded == mark.row:
+                self.steps.expand_next()
+            if model.epoch != part.epoch:
                 self.pipeline.drop()
                 self.pace = FEW
                 return
-        expander.add(part.batch, (steps, part.gathered), (found, part.sifted), part.at)
-        self.breadth = max(part.gathered / (part.at - part.begin), 0.5)
-        self.pace = min(2 * self.pace, len(part.batch.hashes))
-        if len(part.batch.leaves) == expander.model.actors:
+        self.breadth = max(stop.steps / (stop.row - part.begin), 0.5)
+        self.pace = min(2 * self.pace, self.expander.successors)
+        if part.shape == self.expander.shape:
             self.spare.append(part.batch)

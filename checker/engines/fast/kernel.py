@@ -107,12 +107,12 @@ def is_found_again(
 
 
 @njit(cache=True, forceinline=True)
-def put_off(later: State, row: int, state: State) -> bool:
-    """Defer a row, if there is room."""
+def put_off(later: State, row: int, found: int, state: State) -> bool:
+    """Defer a row, if there is room; `found` successors were found before it."""
     at = LATER * state[PUT_OFF]
     if at >= len(later):
         return False
-    later[at], later[at + 1], later[at + 2] = row, state[GATHERED], state[GATHERED]
+    later[at], later[at + 1], later[at + 2] = row, state[GATHERED], found
     state[PUT_OFF] += 1
     return True
 
@@ -165,7 +165,7 @@ def gather(
         if known:
             state[GATHERED] = end
         else:
-            known = put_off(batch.later, row, state)
+            known = put_off(batch.later, row, state[GATHERED], state)
         state[AT] += known
     return known
 

@@ -18,7 +18,6 @@ from checker.engines.fast.actor_tables import (
     NAMED,
     PARTS,
     RECORD,
-    Members,
 )
 from checker.engines.fast.arrays import Growing
 from checker.engines.fast.bits import WORD
@@ -50,11 +49,12 @@ class Choosing:
     """The tables of a mission's actors; they grow with learning.
 
     Attributes:
-        members: The tables in the form that the loops read.
+        learned: The tables in the form that the loops read: the first fields of `Members`.
+        movers: For each transition the number of its agent, plus 1; 0 for a clause (see `Trails.movers`).
         paths: The paths of the search so far.
     """
 
-    members: Members
+    learned: tuple[Any, ...]
 
     def __init__(self, learner: Learner, ample: Ample) -> None:
         self.learner = learner
@@ -74,23 +74,16 @@ class Choosing:
         self.actors = Growing(np.int32)
         self.step_actor = Growing(np.int32)
         self.step_flags = Growing(np.int32)
+        self.movers = Growing(np.int64)
         asked = {FORWARD: ample.forward, SINGLE: ample.single, EDGES: ample.stored}
         self.paths = SearchPaths(len(self.everyone), self.wide, sum(bit for bit in asked if asked[bit]))
         self.stride = self.width = 0
-        self.roomy: tuple[int, int] | None = None
-        self.room: tuple[Any, ...] = ()
         self.looked: tuple[object, ...] = ()
 
     @property
     def wide(self) -> int:
         """The number of words for a bit set of the parts of all agents and clauses."""
         return -(-(KINDS * len(self.everyone) + len(self.clauses)) // WORD) or 1
-
-    @property
-    def movers(self) -> NDArray[np.int64]:
-        """For each transition the number of its agent, plus 1; 0 for a clause (see `Trails.movers`)."""
-        agents = self.part.room[self.step_actor.used].astype(np.int64) // KINDS
-        return np.where(agents < len(self.everyone), agents + 1, 0)
 
     def see(self, groups: list[tuple[Name, ...]], where: Packing, successors: int) -> None:
         """Rebuild the tables from everything learned; `groups` has the agents for each value of their cell."""
@@ -106,7 +99,8 @@ class Choosing:
         self._take_steps()
         self._take_footprints()
         self._look(where)
-        learned = (
+        self.paths.most = successors
+        self.learned = (
             *self.trees,
             self.begins.room,
             self.actors.room,
@@ -123,17 +117,11 @@ class Choosing:
             len(self.everyone),
             self.stride,
         )
-        self.members = Members._make((*learned, *self._room(successors)))
 
-    def _room(self, successors: int) -> tuple[Any, ...]:
-        """Return the scratch space for one row; its contents are meaningless."""
-        self.paths.most = successors
-        size = (len(self.part.room), successors)
-        if size == self.roomy:
-            return self.room
-        self.roomy = size
+    def new_room(self, successors: int) -> tuple[Any, ...]:
+        """Return scratch space for a row with at most `successors` transitions: the last fields of `Members`."""
         sets, words = MOST_HERE * MOST_HERE // WORD, MOST_HERE // WORD
-        self.room = (
+        return (
             np.zeros(MOST_HERE, np.int32),
             np.zeros(MOST_HERE, np.int32),
             np.zeros(len(self.part.room), np.int32),
@@ -149,7 +137,6 @@ class Choosing:
             np.zeros(self.wide, np.uint64),
             np.zeros(self.wide, np.uint64),
         )
-        return self.room
 
     # --- actors -----------------------------------------------------------------------------------------------------
 
@@ -192,9 +179,12 @@ class Choosing:
             if whose is None:  # a part of a transition
                 self.step_actor.append(NOBODY)
                 self.step_flags.append(0)
+                self.movers.append(0)
                 continue
             label = learner.steps[number]
-            self.step_actor.append(self._number(self._actor(label, whose.about)))
+            actor = self._actor(label, whose.about)
+            self.step_actor.append(self._number(actor))
+            self.movers.append(0 if actor.kind == "clause" else 1 + self.everyone[str(actor.owner)])
             self.step_flags.append(_flags(label, learner) | (NAMED if self.ample.eyes.names(label) else 0))
 
     def _actor(self, label: Label, about: Any) -> Actor:

@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Any
+from typing import Any, NamedTuple
 
 from checker.engines.fast.learned_model import (
     AT,
@@ -17,9 +17,7 @@ from checker.engines.fast.learned_model import (
     LATER,
     PUT_OFF,
     SIFTED,
-    LearnedModel,
     State,
-    SuccessorBatch,
 )
 
 EACH = 4
@@ -32,6 +30,14 @@ WORTH = 1 << 8
 """The least number of rows for which another thread pays off: handing over takes time."""
 
 
+class ChunkMark(NamedTuple):
+    """A place in a chunk: a row, and the numbers of transitions and of successors before it."""
+
+    row: int
+    steps: int = 0
+    found: int = 0
+
+
 @dataclass(slots=True, eq=False)
 class RowChunk:
     """Rows that one thread expands.
@@ -39,7 +45,8 @@ class RowChunk:
     Attributes:
         begin, end: The range of rows.
         epoch: The epoch at its start; its results are void if the epoch has changed since.
-        model, exchanges: The trees, and the symmetry tables if any, at its start.
+        shape: The shape of its batch.
+        tables: The learned tables at its start.
         batch: Its results.
         state: Its copy of the loops' state.
         expanding: The future of its expansion; None if no thread has begun it.
@@ -48,31 +55,21 @@ class RowChunk:
     begin: int
     end: int
     epoch: int
-    model: LearnedModel
-    exchanges: Any
-    batch: SuccessorBatch
+    shape: tuple[int, int, int]
+    tables: Any
+    batch: Any
     state: State
     expanding: Future[None] | None = None
 
     @property
-    def at(self) -> int:
-        """The first row not expanded: the end, unless the batch was full before."""
-        return int(self.state[AT])
+    def stop(self) -> ChunkMark:
+        """The end of its results: before its end if the batch was full."""
+        return ChunkMark(*map(int, self.state[[AT, GATHERED, SIFTED]]))
 
-    @property
-    def gathered(self) -> int:
-        """The number of transitions found."""
-        return int(self.state[GATHERED])
-
-    @property
-    def sifted(self) -> int:
-        """The number of their successors that are not known rows."""
-        return int(self.state[SIFTED])
-
-    def put_off(self) -> Iterator[tuple[int, int, int]]:
-        """Yield the deferred rows: the number of each, and the numbers of transitions and successors before it."""
+    def put_off(self) -> Iterator[ChunkMark]:
+        """Yield the deferred rows."""
         rows = self.batch.later[: LATER * int(self.state[PUT_OFF])].reshape(-1, LATER)
-        return ((row, steps, found) for row, steps, found in rows.tolist())
+        return (ChunkMark(*each) for each in rows.tolist())
 
 
 class Pipeline:

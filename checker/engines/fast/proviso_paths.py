@@ -34,6 +34,9 @@ followed transitions are stored.
 LED, FOLLOWED = range(2)
 """The numbers of stored leads and of stored transitions, in `Trails.count`."""
 
+AT_ITS_TURN = -1
+"""`Trails.end` where the cycle proviso is decided when a row is stored."""
+
 NOWHERE = 0xFFFFFFFF
 """The target of a stored transition that the limit left out."""
 
@@ -50,9 +53,9 @@ class Trails(NamedTuple):
         leads: For each of these rows, the next row and the number of the set of parts taken on the way.
         count: The numbers of stored leads and transitions.
         sets: The sets of parts by number, as words of bits: there are few.
-        sought: Scratch space for a set to look up.
+        sought, further: Scratch space for sets of parts.
         asked: What is asked of the search, as bits.
-        end: The first row of the next layer, in a search that is divided among workers; 0 in any other.
+        end: The first row of the next layer, in a search that is divided among workers; AT_ITS_TURN; 0 in any other.
         followed: The followed transitions, row by row: target and step.
         ends: For each expanded row, the number of transitions up to its last one.
     """
@@ -64,6 +67,7 @@ class Trails(NamedTuple):
     count: State
     sets: Interned
     sought: Words
+    further: Words
     asked: int
     end: int
     followed: Words
@@ -154,13 +158,12 @@ class SearchPaths:
 
     Attributes:
         most: The greatest number of transitions of a row.
-        end: The first row of the next layer, in a search that is divided among workers; 0 in any other.
     """
 
     def __init__(self, agents: int, wide: int, asked: int = 0) -> None:
         self.wide = wide
         self.asked = asked
-        self.most = self.end = 0
+        self.most = 0
         self.movers = Pages(np.min_scalar_type(agents).type, 1)
         self.led, self.leads = Pages(np.uint64, 1), Pages(np.uint64, 1)
         self.before = Pages(np.uint32, 1)
@@ -168,15 +171,23 @@ class SearchPaths:
         self.sets = Pool(wide, np.zeros(0, np.uint64))
         self.followed, self.ends = Pages(np.uint64, 1), Pages(np.uint64, 1)
 
-    @property
-    def trails(self) -> Trails:
-        """The paths in the form that the loops read. Growing replaces them: don't keep them."""
+    def trails(self, end: int = 0) -> Trails:
+        """Return the paths in the form that the loops read, with `Trails.end`. They are void after growing."""
         rooms = (self.movers.room, self.led.room, self.before.room, self.leads.room)
-        sought, stored = np.zeros(self.wide, np.uint64), (self.followed.room, self.ends.room)
-        return Trails(*rooms, self.count, self.sets.interned, sought, self.asked, self.end, *stored)
+        sought, further = np.zeros(self.wide, np.uint64), np.zeros(self.wide, np.uint64)
+        stored = (self.followed.room, self.ends.room)
+        return Trails(*rooms, self.count, self.sets.interned, sought, further, self.asked, end, *stored)
+
+    def lacks_room(self, rows: int) -> bool:
+        """Return whether `reserve` is due."""
+        stored = self.asked & EDGES and len(self.followed.room) < int(self.count[FOLLOWED]) + 2 * self.most
+        return bool(stored) or rows > len(self.leads.room) or not self.sets.has_room(SETS)
 
     def reserve(self, rows: int) -> None:
-        """Make room for the paths of `rows` rows, for more sets of parts, and for more transitions."""
+        """Make room for the paths of `rows` rows, for more sets of parts, and for more transitions.
+
+        No other thread may read paths meanwhile.
+        """
         self.movers.grow(rows)
         self.leads.grow(rows)
         self.led.grow(rows // WORD + 1)

@@ -1,24 +1,23 @@
 """The search: breadth-first over the rows of a store, by the successors of a model.
 
 A row's way is one loop: list its steps, choose some of them, make their successors, map these to representatives, add
-the new ones to the store. `FrontierChunks` does it for all steps, in any number of threads; the loop of partial-order
-reduction chooses some. Rows get the same numbers whoever expands them. The search visits the same configurations in
-the same order as the reference explorer, and stops at the same bounds.
+the new ones to the store. `FrontierChunks` does it in any number of threads, for `AllSteps` or, with partial-order
+reduction, for `ChosenSteps`. Rows get the same numbers whoever expands them. The search visits the same configurations
+in the same order as the reference explorer, and stops at the same bounds.
 """
 
 from collections import Counter
-from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from checker.engines.fast.expander import Expander
-from checker.engines.fast.frontier_chunks import FrontierChunks
-from checker.engines.fast.learned_model import AT
+from checker.engines.fast.frontier_chunks import AllSteps, FrontierChunks
 from checker.engines.fast.learner import Learner
 from checker.engines.fast.row_store import RowStore
 from checker.engines.fast.rule_model import RuleModel
 
 if TYPE_CHECKING:
+    from checker.engines.fast.chosen_steps import ChosenSteps
     from checker.engines.fast.partial_order import Choosing
     from checker.engines.fast.symmetry_tables import Exchanging
     from checker.reduction.reducer import Reduced
@@ -40,6 +39,15 @@ def exchanging(learner: Learner, reduce: "Reduced | None", *, ahead: bool = True
     from checker.engines.fast.symmetry_tables import Exchanging  # noqa: PLC0415  # compiled only for symmetry
 
     return Exchanging(learner, reduce.symmetry.items, ahead=ahead)
+
+
+def chosen_steps(expander: Expander, choosing: "Choosing | None", threads: int = 1) -> "ChosenSteps | None":
+    """Return the steps of ample sets; None without partial-order reduction."""
+    if choosing is None:
+        return None
+    from checker.engines.fast.chosen_steps import ChosenSteps  # noqa: PLC0415  # compiled only for a reduction
+
+    return ChosenSteps(expander, choosing, threads)
 
 
 class RowSearch:
@@ -64,7 +72,8 @@ class RowSearch:
         self.store = RowStore(limit)
         self.model = RuleModel(learner, self.store, exchanging)
         self.expander = Expander(self.model, choosing)
-        self._chunks = FrontierChunks(self.expander, threads)
+        steps = chosen_steps(self.expander, choosing, threads) or AllSteps(self.expander)
+        self._chunks = FrontierChunks(self.expander, steps, threads)
         self.model.see()
         self.store.make_room(self.expander.successors)
 
@@ -93,26 +102,7 @@ class RowSearch:
         while self.expanded < until:
             if self.store.compress():
                 self.model.see()
-            if self.choosing is None:
-                self._chunks.advance(end)
-            else:
-                self._advance_by(self.choosing, until)
-
-    def _advance_by(self, choosing: "Choosing", until: int) -> None:
-        """Expand some rows before row `until`, following ample sets."""
-        from checker.engines.fast.ample_kernel import expand_reduced  # noqa: PLC0415  # compiled only for a reduction
-
-        model, store, expander = self.model, self.store, self.expander
-        new, store.state[AT] = 2 * expander.successors, store.expanded
-        store.make_room(new)
-        choosing.paths.reserve(store.rows.room)
-        words, origins, table = store.arrays
-        known = (model.loops, choosing.members, *model.symmetry, choosing.paths.trails)
-        arrays = (words, store.rows.folded, origins, table, expander.batch)
-        loop: Callable[..., bool] = expand_reduced
-        counts = (expander.met.room, expander.counts.room)
-        if not loop(*known, *arrays, until, self.size + new, *counts, store.state):
-            expander.learn()
+            self._chunks.advance(end)
 
     def spill(self, folder: Path) -> None:
         """Move rows, origins and paths to files in a folder.

@@ -9,6 +9,7 @@ from checker.engines.fast.actor_tables import MADE, STORED, UNKNOWN, Members
 from checker.engines.fast.decision_leaves import ALIKE, STEP
 from checker.engines.fast.jit_decorators import inner
 from checker.engines.fast.learned_model import (
+    AT,
     FULL,
     KEPT,
     LIMIT,
@@ -21,7 +22,7 @@ from checker.engines.fast.learned_model import (
 )
 from checker.engines.fast.make_successors import is_repeated, make_folded, make_plain, put_stored
 from checker.engines.fast.table import Words, hashed
-from checker.engines.fast.tree_compression import NO_ROOM, UNMET, FoldedTable
+from checker.engines.fast.tree_compression import NO_ROOM, UNMET, FoldedTable, leave_open
 
 
 @inner(cache=True)
@@ -49,6 +50,7 @@ def make_stored(
     r: Members,
     x: Any,
     d: Any,
+    leaving_open: bool,
     f: FoldedTable | None,
     here: Words,
     batch: SuccessorBatch,
@@ -57,13 +59,15 @@ def make_stored(
 ) -> bool:
     """Make and hash the stored form of a transition's successor unless it is made (see `put_stored`).
 
-    Return False at something not learned yet, or without room.
+    Return False at something not learned yet, or without room. A compressed successor with an unknown piece or node is
+    added, or left open for the storing thread.
     """
     is_plain = f is None or x is not None  # otherwise it is compressed at once, without its words
     if is_plain and not make(m, r, f, here, batch, k, state):
         return False
     if r.made[k] != STORED:
-        width, kept, adding = state[WORDS], state[KEPT], state[SIZE] < state[LIMIT]
+        width, kept, within = state[WORDS], state[KEPT], state[SIZE] < state[LIMIT]
+        adding = within and not leaving_open
         if is_plain:
             there = put_stored(m, x, d, f, batch.words, k * width, width, adding, batch.kept, k * kept, state)
         else:
@@ -72,6 +76,8 @@ def make_stored(
                 state[NODE] = FULL
         if there < 0 and there != UNMET:  # beyond the limit, no piece is added
             return False
+        if there == UNMET and within:
+            leave_open(batch.kept, k * kept, state[AT], batch.steps[k])
         batch.hashes[k] = hashed(batch.kept, k * kept, kept)
         r.made[k] = STORED
     return True

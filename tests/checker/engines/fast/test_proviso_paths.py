@@ -57,19 +57,19 @@ def compared(search, apart, room):
     if not room:
         for onward, _ in search:
             if onward is not None:
-                intern(kept.trails, words(onward[1]))
+                intern(kept.trails(), words(onward[1]))
         kept.sets.interned.counts[MOST] = len(kept.sets)
     for number, (onward, asked) in enumerate(search):
         for row in range(apart * (number - 1) + 1 if number else 0, apart * number + 1):
-            begin(kept.trails, row)
+            begin(kept.trails(), row)
         for row in asked:
             taken = np.zeros(2, np.uint64)
-            found = end(kept.trails, apart * row, taken)
+            found = end(kept.trails(), apart * row, taken)
             expected = known.end(row)
             assert (found, taken.tolist()) == (apart * expected.to, words(expected.taken).tolist())
         if onward is not None and known.end(onward[0]).to != number:  # it would close a cycle
             known.lead(number, *onward)
-            lead(kept.trails, apart * number, apart * onward[0], words(onward[1]))
+            lead(kept.trails(), apart * number, apart * onward[0], words(onward[1]))
     assert int(kept.count[0]) == len(known.leads)
 
 
@@ -83,4 +83,4 @@ def test_paths_end_where_those_of_the_reference_end(search, apart, room):
 def test_who_moved_last_takes_as_many_bytes_as_numbers_of_agents_need(agents, kind):
     kept = SearchPaths(agents, 1)
     kept.reserve(10)
-    assert kept.trails.movers.dtype == kind
+    assert kept.trails().movers.dtype == kind

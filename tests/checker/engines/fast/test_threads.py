@@ -1,6 +1,7 @@
 """Several threads: whatever they do at once, everything that one thread finds is found, with the same numbers."""
 
 import threading
+from contextlib import suppress
 
 import pytest
 from checked_missions import interrupted_at, load
@@ -8,13 +9,22 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scale import IS_WHOLE, crossed, examples
 from shipped import UNTIMED
-from swarms import LOOKS, ORBITS, mission
+from swarms import LOOKS, ORBITS, mission, swarms
 
 import checker.limits
 from bigactors.cli import main
-from checker import Engine, Keeping, Limits, explore
+from checker import Engine, Keeping, Limits, RefusedError, explore
 from checker.engines.contract import Options
-from checker.engines.fast import expander, explorer, frontier_chunks, pipeline, row_store, tree_compression
+from checker.engines.fast import (
+    chosen_steps,
+    expander,
+    explorer,
+    frontier_chunks,
+    pipeline,
+    row_store,
+    tree_compression,
+)
+from checker.engines.fast.chosen_rows import REJECTED
 from checker.engines.fast.explorer import explore_fast
 from checker.engines.fast.rows import Rows
 from checker.reduction import Reduced, Reduction
@@ -93,6 +103,67 @@ def test_representatives_are_explored_alike_by_any_number_of_threads(name, varia
     assert several == alone
 
 
+CHOSEN = {
+    f"{'with symmetry' if symmetric else 'por'}-{threads}": (threads, symmetric)
+    for threads in SEVERAL
+    for symmetric in (False, True)
+}
+
+
+def assert_chosen_alike(initial, threads, symmetric, runs=()):
+    """Explore by ample sets with one thread and with several; the rows, paths and lessons are the same."""
+    wanted = tuple(Reduction) if symmetric else (Reduction.POR,)
+    paths = []
+    for number in (1, threads):
+        reduced = Reduced(initial, wanted, runs=runs)
+        found = explore(initial, engine=Engine.FAST, threads=number, limits=SOME, reduce=reduced)
+        search = found.survey.search
+        kept = search.choosing.paths.kept(search.size, search.expanded)
+        paths.append(([each.tolist() for each in kept], seen(initial, number, reduce=reduced)))
+    assert paths[0] == paths[1]
+
+
+@pytest.mark.usefixtures("kept")
+@crossed(UNTIMED, CHOSEN)
+def test_ample_sets_are_chosen_alike_by_any_number_of_threads(name, variation):
+    with suppress(RefusedError):
+        assert_chosen_alike(start(name), *variation)
+
+
+@pytest.mark.usefixtures("kept")
+@crossed(list(SWARMS), CHOSEN)
+def test_ample_sets_of_swarms_are_chosen_alike_by_any_number_of_threads(name, variation):
+    loaded = mission(*SWARMS[name])
+    assert_chosen_alike(loaded.initial, *variation)
+
+
+@given(swarms(), st.sampled_from(list(CHOSEN.values())))
+@examples(30)
+def test_ample_sets_of_generated_swarms_are_chosen_alike_by_any_number_of_threads(text, chosen):
+    with suppress(RefusedError):
+        assert_chosen_alike(load(text, "").initial, *chosen)
+
+
+@pytest.mark.parametrize("threads", [1, 3])
+def test_a_set_whose_path_returns_is_rejected_at_the_turn_of_its_row(monkeypatch, threads):
+    """An agent that goes in a circle is chosen again and again: at the end of the circle, others must move, too."""
+    ended = []
+    store = chosen_steps.store_chosen
+
+    def noted(*given):
+        ended.append(store(*given))
+        return ended[-1]
+
+    monkeypatch.setattr(chosen_steps, "store_chosen", noted)
+    initial = mission("loop { control(MOVE_HOST_TO room0) control(MOVE_HOST_TO dock0) }", 3).initial
+    reduced = Reduced(initial, (Reduction.POR,))
+    found = explore(initial, engine=Engine.FAST, threads=threads, reduce=reduced)
+    known = explore(initial, engine=Engine.REFERENCE, reduce=reduced)
+    assert ended.count(REJECTED) > 0
+    assert list(found.configurations) == list(known.configurations)
+    assert (found.transitions, found.allowed) == (known.transitions, known.allowed)
+
+
 @given(hypothesis_strategies.initial_configurations(), st.sampled_from([1, 2]))
 @examples(60)
 def test_generated_missions_are_explored_alike_by_any_number_of_threads(initial, plain):
@@ -137,21 +208,21 @@ def test_other_threads_expand_slices_and_sift_them(monkeypatch):
     done = set()
 
     def noted(name):
-        do = getattr(frontier_chunks.FrontierChunks, name)
+        do = getattr(frontier_chunks.AllSteps, name)
 
         def note(self, part):
             done.add((name, threading.current_thread() is threading.main_thread()))
             do(self, part)
 
-        monkeypatch.setattr(frontier_chunks.FrontierChunks, name, note)
+        monkeypatch.setattr(frontier_chunks.AllSteps, name, note)
 
-    noted("_expand")
-    noted("_sift")
+    noted("gather")
+    noted("sift")
     alone = seen(start("rendezvous"), 1, limits=Limits())
-    assert done == {("_expand", True)}
+    assert done == {("gather", True)}
     assert seen(start("rendezvous"), 4, limits=Limits()) == alone
-    assert {("_expand", False), ("_sift", False)} <= done
-    assert ("_sift", True) not in done
+    assert {("gather", False), ("sift", False)} <= done
+    assert ("sift", True) not in done
 
 
 @pytest.fixture
