@@ -11,7 +11,7 @@ PARTS  := $(PAGE)/parts/LICENSES.txt
 SMOKE  := $(addprefix tests/,missions paper semantics/state/test_cell_values.py \
 	$(addprefix bigactors/test_,big.py cli.py mission_lookup.py public_names.py run.py))
 
-.PHONY: parts demo live-demo test test-long lint types test-wheel wheel constraints storm fuzz mutants bounds bench bench-bigraphs bench-time time-oracle docs pictures clean
+.PHONY: parts demo live-demo test tests test-long lint types test-wheel wheel constraints storm fuzz mutants bounds bench bench-bigraphs bench-time time-oracle docs pictures clean
 
 $(STAMP): pyproject.toml
 	$(PYTHON) -m venv $(VENV)
@@ -35,9 +35,12 @@ live-demo: $(STAMP) $(PARTS)  ## fly a verified mission with a simulated plane a
 	$(BIN)/python -m bigactors.live_demo live-demo $(if $(CONSOLE),--console)
 
 # Processes that the tests start would compile all modules again where no bytecode is kept.
-test test-long fuzz: export PYTHONDONTWRITEBYTECODE =
+tests test-long fuzz: export PYTHONDONTWRITEBYTECODE =
 
-test: lint types $(STAMP) $(PARTS)  ## what must hold at each change; of generated tests a part (tests/scale.py)
+test: lint  ## what must hold at each change; of generated tests a part (tests/scale.py)
+	$(MAKE) --jobs 2 types tests
+
+tests: $(STAMP) $(PARTS)
 	$(BIN)/python -m pytest -n 3 --dist worksteal -q -m "not long"
 
 test-long: $(STAMP) $(PARTS)  ## whole flights, killed processes, workers, compilations (some 10 minutes)

@@ -1,5 +1,6 @@
 """Chromium for tests by playwright, and pages of which nothing may go wrong in silence."""
 
+import re
 import shutil
 from contextlib import contextmanager
 from pathlib import Path
@@ -43,7 +44,9 @@ def chromium(*arguments):
     if found is None:
         pytest.skip("there is no chromium")
     with playing.sync_playwright() as started:
-        browser = started.chromium.launch(executable_path=found, args=["--no-sandbox", *arguments])
+        browser = started.chromium.launch(
+            executable_path=found, args=["--no-sandbox", "--disable-gpu", *arguments]
+        )
         try:
             yield browser
         finally:
@@ -59,13 +62,11 @@ class Watch:
     def over(self, page, own):
         """Watch a page, which may ask only what is under one address; return the page."""
 
-        def ask(route):
-            if route.request.url.startswith((own, "data:", "blob:")):
-                return route.continue_()
+        def refuse(route):
             self.others.append(route.request.url)
-            return route.abort()
+            route.abort()
 
-        page.route("**/*", ask)
+        page.route(re.compile(rf"^(?!{re.escape(own)}|data:|blob:)"), refuse)
         page.on("websocket", lambda each: self._judge(each.url, own.replace("http", "ws", 1)))
         page.on("pageerror", lambda error: self.errors.append(str(error)))
         page.on("console", self._hear)

@@ -3,6 +3,7 @@
 import asyncio
 
 import pytest
+from scale import crossed
 from worlds import AREA, EPOCH, FIELD, HOME, TINY, World, flight, flown, running, simulated, until
 
 from adapters.mavlink import Autopilot, Craft, Stations
@@ -200,12 +201,11 @@ def test_the_same_seed_gives_the_same_flight():
     assert run(main()) == run(main())
 
 
-@pytest.mark.parametrize("enforce", [True, False])
-@pytest.mark.parametrize("after", [0.6, 1.5, 3.0, 5.0])
+@crossed([0.6, 1.5, 3.0, 5.0], {"enforced": True, "not enforced": False})
 @simulated
-async def test_a_hand_over_amid_an_upload_lets_the_new_authority_begin_it_anew(enforce, after):
-    slow = Disturbance(delay=(0.15, 0.2))
-    async with flight(Kind.COPTER, slow, stations=TWO, enforce=enforce) as f:
+async def test_a_hand_over_amid_an_upload_lets_the_new_authority_begin_it_anew(name, variation):
+    slow, after = Disturbance(delay=(0.15, 0.2)), name
+    async with flight(Kind.COPTER, slow, stations=TWO, enforce=variation) as f:
         await until(lambda: f.world.property("uav0"))
         await until(lambda: f.vehicle.ready)
         await f.plugin.command(Follow("r1", "uav0", CLOSE))

@@ -1,12 +1,12 @@
 """Many runs: the same as single ones, and estimates that cover what is known by hand."""
 
 import random
+from importlib import import_module
 from itertools import product
 from math import isinf
 
 import numpy as np
 import pytest
-from scipy import stats
 
 from bigraphs import sampling
 from bigraphs.examples import example_names, example_text
@@ -29,6 +29,12 @@ big start = A | A; big one = B; big both = B | B;
 react decay = A -[ 0.5 ]-> B;
 begin sbrs init start; rules = [ {decay} ]; preds = { one, both }; end
 """
+
+
+@pytest.fixture
+def stats():
+    """Load scipy's statistics where they judge: it takes a second."""
+    return import_module("scipy.stats")
 
 
 def runs(text, count, steps=100, until=None):
@@ -119,13 +125,13 @@ def test_intervals_of_textbooks():
     assert mean([1.0, 3.0]).low == pytest.approx(2 - 12.7062)
 
 
-def test_quantiles_are_those_of_scipy():
+def test_quantiles_are_those_of_scipy(stats):
     for freedom, confidence in product([*range(1, 30), 199, 200, 201, 10**6], (0.5, 0.9, 0.95, 0.999)):
         expected = stats.t.ppf((1 + confidence) / 2, freedom)
         assert student_quantile(confidence, freedom) == pytest.approx(expected, rel=1e-7)
 
 
-def test_intervals_of_probabilities_are_those_of_scipy():
+def test_intervals_of_probabilities_are_those_of_scipy(stats):
     for runs, share_of in product((1, 2, 10, 999, 10**6), (0, 1e-6, 1 / 3, 1 - 1e-6, 1)):
         times = round(runs * share_of)
         expected = stats.binomtest(times, runs).proportion_ci(0.95, method="wilson")

@@ -108,7 +108,7 @@ EVERY_WAY = {
 }
 
 
-SOME = Limits(configurations=3_000 if IS_WHOLE else 500)
+SOME = Limits(configurations=3_000 if IS_WHOLE else 250)
 
 
 @crossed(ALL, EVERY_WAY)

@@ -131,7 +131,7 @@ def unless_refused(test):
     return refused
 
 
-@seeds(1_000, 18)
+@seeds(1_000, 12)
 @unless_refused
 def test_every_sample_of_a_flight_is_in_the_region(seed):
     rng = np.random.default_rng(seed)
@@ -140,7 +140,7 @@ def test_every_sample_of_a_flight_is_in_the_region(seed):
     assert outside(found.samples, found.located.region) <= TOLERANCES.get(world, 0.06)
 
 
-@seeds(1_000, 18)
+@seeds(1_000, 12)
 @unless_refused
 def test_what_relations_promise_of_a_place_holds_for_every_sample(seed):
     rng = np.random.default_rng(seed)
@@ -164,7 +164,7 @@ def test_what_relations_promise_of_a_place_holds_for_every_sample(seed):
         assert not within(found.located, there, distances.max() - 0.05)
 
 
-@seeds(1_000, 18)
+@seeds(1_000, 12)
 @unless_refused
 def test_the_nearest_points_of_two_flights_are_no_farther_than_any_samples(seed):
     rng = np.random.default_rng(seed)

@@ -24,7 +24,7 @@ def drawn(seed):
     return found
 
 
-@seeds(3_000, 27)
+@seeds(3_000, 18)
 def test_the_nearest_points_are_as_near_as_any_two_and_lie_in_their_areas(seed):
     a, b = drawn(seed)
     line = nearest_line(a, b)

@@ -72,7 +72,7 @@ def test_counted_by_hand():
 
 
 @given(hypothesis_strategies.configurations(hypothesis_strategies.initial_configurations(misses=True)))
-@examples(300)
+@examples(300, 6)
 def test_the_answers_are_those_of_worlds_from_which_something_has_vanished(c):
     for agent in c.alpha.names():
         steps = list(sense(c, agent))

@@ -54,10 +54,13 @@ OPENS = """async () => {
   press("b");
   return document.querySelectorAll("dialog[open]").length;
 }"""
-CLOSES = """() => {
-  document.querySelector("dialog[open]").close();
+CLOSES = """async () => {
+  const dialog = document.querySelector("dialog[open]");
+  const closed = new Promise((done) => dialog.addEventListener("close", done, { once: true }));
+  dialog.close();
   const element = document.activeElement;
   element.dispatchEvent(new KeyboardEvent("keydown", { key: " ", bubbles: true }));
+  await closed;
   return element.textContent;
 }"""
 

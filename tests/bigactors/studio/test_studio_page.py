@@ -315,7 +315,7 @@ def test_what_a_flight_refuses_is_said_with_what_to_do(opened):
     )
 
 
-@pytest.mark.parametrize("theme", ["light", "dark"])
+@pytest.mark.parametrize("theme", ["light", pytest.param("dark", marks=pytest.mark.long)])
 def test_from_an_empty_folder_to_a_verdict_and_a_counterexample(opened, tmp_path, theme):
     page = opened("mission", theme=theme)
     page.fill("[name=name]", "9th")
@@ -408,6 +408,10 @@ def test_what_another_editor_saves_is_taken_and_never_over_unsaved_text(opened, 
 
 def test_a_name_is_chosen_in_the_text_on_the_map_and_in_the_bigraph_together(opened):
     page = opened("patrol.mission", MISSION)
+    until(page, "Boolean(studio.editor)")
+    put_cursor(page, "  east")
+    assert page.locator(".cm-name-class").count() == 0  # the language server has not answered
+    says(page, ".chosen-name", "east0 ×")
     shows(page, ".bigraph svg")
     shows(page, ".cm-name-enumMember")
     put_cursor(page, "  east", behind=True)
@@ -428,15 +432,19 @@ def test_a_name_is_chosen_in_the_text_on_the_map_and_in_the_bigraph_together(ope
         page.set_viewport_size({"width": width, "height": height})
         assert overflow(page) == 0
         picture(page, f"chosen-{width}")
+    page.set_viewport_size({"width": 1280, "height": 800})
+    sees_the_graph_without_scrolling(page)
 
 
 def test_the_world_is_drawn_on_the_map_and_its_text_follows_until_it_is_undone(opened, tmp_path):
     page = opened("patrol.mission", MISSION)
     shows(page, ".bigraph svg")
+    shows(page, ".verdicts .verdict-holds")
     shows(page, ".cm-name-enumMember")
     page.click("text=Draw")
     put_cursor(page, "  east")
     shows(page, ".handle-radius")
+    assert faults(page) == []
     picture(page, "drawing")
     box = page.locator(".handle-radius").bounding_box()
     page.mouse.move(box["x"] + 8, box["y"] + 8)
@@ -468,14 +476,6 @@ def test_the_world_is_drawn_on_the_map_and_its_text_follows_until_it_is_undone(o
     assert text_of(page) == MISSION
 
 
-def test_a_cursor_before_the_language_server_answers_chooses_its_name(opened):
-    page = opened("patrol.mission", MISSION)
-    until(page, "Boolean(studio.editor)")
-    put_cursor(page, "  east")
-    assert page.locator(".cm-name-class").count() == 0
-    says(page, ".chosen-name", "east0 ×")
-
-
 def test_a_run_from_a_file_is_shown_left_and_there_after_a_reload_and_a_change_of_the_text(opened, tmp_path):
     mission = read_mission(MISSION).under(Scheduler.FCFS, Control.TIMED)
     trace = check(mission).verdicts["there"].witness
@@ -499,8 +499,7 @@ def test_a_run_from_a_file_is_shown_left_and_there_after_a_reload_and_a_change_o
     until(page, f"studio.shown.value.run === '~{len(trace)}'")
 
 
-def test_the_graph_is_seen_without_scrolling(opened):
-    page = opened("patrol.mission", MISSION, size={"width": 1280, "height": 800})
+def sees_the_graph_without_scrolling(page):
     page.get_by_role("tab", name="Graph").click()
     shows(page, ".graph .node")
     picture(page, "graph")
@@ -533,9 +532,8 @@ def test_a_file_dropped_on_the_map_brings_its_places_and_another_is_refused(open
     assert [each.name for each in tmp_path.glob("*.geojson")] == ["buoys.geojson"]
 
 
-@pytest.mark.parametrize("theme", ["light", "dark"])
-def test_axe_finds_no_fault_in_the_studio(opened, theme):
-    page = opened("patrol.mission", MISSION, theme=theme)
+def test_axe_finds_no_fault_in_the_studio_in_the_dark_either(opened):
+    page = opened("patrol.mission", MISSION, theme="dark")
     shows(page, ".bigraph svg")
     shows(page, ".verdicts .verdict-holds")
     page.click("text=Draw")

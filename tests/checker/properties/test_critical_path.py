@@ -4,7 +4,8 @@ from dataclasses import replace
 from itertools import pairwise
 
 from checked_missions import load
-from hypothesis import HealthCheck, given, settings
+from hypothesis import HealthCheck, given
+from scale import examples
 from timed_missions import FLIGHT, timed_missions, with_timing, within
 
 from checker import Limits, check
@@ -29,8 +30,8 @@ def flight(timing=MINUTES):
     return with_timing(load(FLIGHT).initial, timing)
 
 
-def report_on(c, *asked):
-    return check(c, asked, Limits(configurations=2_000))
+def report_on(c, *asked, most=2_000):
+    return check(c, asked, Limits(configurations=most))
 
 
 def test_a_violated_deadline_is_made_of_bounds_each_with_its_words_and_line():
@@ -80,11 +81,11 @@ def test_time_that_stops_has_the_path_to_that_moment():
     assert [(leg.begin, leg.end, leg.label.rule) for leg in stop.path] == [(0, 5, "timeout")]
 
 
-@settings(max_examples=6, suppress_health_check=list(HealthCheck), deadline=None)
+@examples(60, suppress_health_check=list(HealthCheck), deadline=None)
 @given(timed_missions())
 def test_no_leg_of_a_path_takes_longer_than_its_bound(c):
     asked = [within(2, Ended(a)) for a in sorted(c.alpha.names())[:1]]
-    for violation in report_on(c, *asked).verdicts[0].violations if asked else ():
+    for violation in report_on(c, *asked, most=400).verdicts[0].violations if asked else ():
         assert all(one.end == other.begin for one, other in pairwise(violation.path))
         for leg in violation.path:
             assert leg.begin < leg.end <= 3

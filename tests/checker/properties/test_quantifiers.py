@@ -103,7 +103,7 @@ def said(report):
     ]
 
 
-@examples(60, deadline=None)
+@examples(60, 6, deadline=None)
 @given(formulas())
 def test_a_quantifier_that_is_left_says_what_it_says_written_out(formula):
     written, left = both(f'invariant "i": {formula} reachable "r": {formula}')
@@ -116,7 +116,7 @@ def test_a_quantifier_that_is_left_says_what_it_says_written_out(formula):
     assert len({bool(each.verdicts["i"].remarks) for each in reports}) == 1
 
 
-@examples(20, deadline=None)
+@examples(20, 5, deadline=None)
 @given(formulas())
 def test_a_left_quantifier_is_refused_by_no_reduction_that_takes_it_written_out(formula):
     written, left = both(f'invariant "i": {formula}')
@@ -126,7 +126,7 @@ def test_a_left_quantifier_is_refused_by_no_reduction_that_takes_it_written_out(
         assert outcomes == {check(written).verdicts["i"].outcome}
 
 
-@examples(40, deadline=None)
+@examples(40, 5, deadline=None)
 @given(formulas())
 def test_the_names_that_are_told_of_a_violation_make_the_formula_false(formula):
     _, left = both(f'invariant "i": {formula}')

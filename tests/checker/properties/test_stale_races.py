@@ -282,7 +282,7 @@ def test_what_a_mission_lets_the_monitor_forget_would_have_made_no_race(path):
     assert remembering_everything(c) in (None, first_races(c))
 
 
-@examples(100 if IS_WHOLE else 45)
+@examples(100 if IS_WHOLE else 30)
 @given(
     st.one_of(
         missions(("bare", "tested", "looked")),
@@ -326,7 +326,7 @@ def received(c):
 # --- by definition --------------------------------------------------------------------------------------------
 
 
-@examples(300 if IS_WHOLE else 180)
+@examples(300 if IS_WHOLE else 120)
 @given(
     st.one_of(companies(), chains()),
     st.sampled_from(CONTROLS),

@@ -269,7 +269,7 @@ def asked(invariant, reachable, claim):
         yield f'ltl "l": {written(claim)}'
 
 
-@examples(150 if IS_WHOLE else 75)
+@examples(150 if IS_WHOLE else 45)
 @everything
 def test_verdicts_are_those_of_an_interpreter_that_forgets_nothing(block, invariant, reachable, claim):
     mission = mission_of(block, *asked(invariant, reachable, claim))

@@ -59,7 +59,7 @@ def both(initial, most):
 
 @pytest.mark.parametrize("name", UNTIMED)
 def test_a_mission_that_ships_is_explored_as_if_nothing_were_shared(name):
-    both(load_mission(name).initial, 800)
+    both(load_mission(name).initial, 800 if IS_WHOLE else 400)
 
 
 @given(text=swarms())
@@ -195,7 +195,7 @@ scheduler {scheduler}
 """
 
 
-@seeds(200, 8)
+@seeds(200, 5)
 def test_fleets_that_differ_in_what_is_looked_at_are_explored_as_by_the_reference(seed):
     initial = load(looking_fleet(seed), "").initial
     shared, _ = both(initial, 500)
@@ -268,7 +268,7 @@ def test_a_rule_says_whom_it_tells_apart(rule, apart):
 def test_beliefs_are_sorted_so_nothing_is_below_a_node_whose_kind_holds_nothing(name):
     initial = load_mission(name).initial
     signature, kind = initial.setting.signature, initial.setting.kind
-    for c in explore(initial, engine=Engine.FAST, limits=Limits(configurations=2_000)).configurations:
+    for c in explore(initial, engine=Engine.FAST, limits=Limits(configurations=600)).configurations:
         logical = c.structure.logical
         places = {node: logical.parent(node) for node in logical.nodes()}
         for node, place in places.items():

@@ -206,7 +206,7 @@ def forge(arrays, part, way, at, number):
 
 @pytest.mark.fuzz
 @pytest.mark.parametrize("engine", ENGINES)
-@settings(max_examples=max(40, MANY))
+@settings(max_examples=max(20, MANY))
 @given(data=st.data())
 def test_forged_files_are_refused_or_gone_on_with(engine, data):
     files = ENGINES[engine][0]()

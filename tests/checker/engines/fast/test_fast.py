@@ -2,7 +2,7 @@
 
 from checked_missions import load, timeless, visited
 from hypothesis import given
-from scale import crossed, examples
+from scale import IS_WHOLE, crossed, examples
 from shipped import UNTIMED
 
 from checker import Engine, Limits, Outcome, check, explore
@@ -11,7 +11,7 @@ from semantics import Control, Scheduler, hypothesis_strategies
 from semantics.races.monitor import monitored
 from specs.elaboration import Variation, load_mission
 
-FEW, CROWDED = Limits(configurations=400), Limits(configurations=100, pending=1)
+FEW, CROWDED = Limits(configurations=400 if IS_WHOLE else 250), Limits(configurations=100, pending=1)
 
 VARIATIONS = {
     "as written": Variation(),

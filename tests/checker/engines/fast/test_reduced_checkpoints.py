@@ -30,9 +30,15 @@ def small_chunks(monkeypatch):
     monkeypatch.setattr(explorer, "CHUNK", 8)
 
 
-@pytest.fixture(params=[row_store.PLAIN, 1], ids=["plain", "folded"])
-def kept(request, monkeypatch):
-    monkeypatch.setattr(row_store, "PLAIN", request.param)
+KEPT = {"plain": row_store.PLAIN, "folded": 1}
+MANNERS = {
+    f"{name} {kept}": (reductions, KEPT[kept]) for kept in KEPT for name, reductions in REDUCTIONS.items()
+}
+
+
+def keep(monkeypatch, plain):
+    """Let rows be kept as they are, or fold them all."""
+    monkeypatch.setattr(row_store, "PLAIN", plain)
     monkeypatch.setattr(row_store, "COMPRESSED_FROM", 0)
 
 
@@ -66,18 +72,19 @@ def assert_goes_on(initial, reductions, folder, cuts, threads=1, runs=()):
     return whole
 
 
-@pytest.mark.usefixtures("kept")
-@crossed(list(SWARMS), REDUCTIONS)
-def test_what_was_cut_goes_on(tmp_path, name, variation):
+@crossed(list(SWARMS), MANNERS)
+def test_what_was_cut_goes_on(tmp_path, monkeypatch, name, variation):
+    reductions, plain = variation
+    keep(monkeypatch, plain)
     initial = mission(*SWARMS[name]).initial
     with suppress(RefusedError):
-        whole = assert_goes_on(initial, variation, str(tmp_path), (2, 9, 30), threads=3)
+        whole = assert_goes_on(initial, reductions, str(tmp_path), (2, 9, 30), threads=3)
         assert whole.size > 5
 
 
-@pytest.mark.usefixtures("kept")
-@pytest.mark.parametrize("reductions", REDUCTIONS.values(), ids=REDUCTIONS)
-def test_followed_transitions_are_kept_for_properties_of_runs(tmp_path, reductions):
+@pytest.mark.parametrize(("reductions", "plain"), MANNERS.values(), ids=MANNERS)
+def test_followed_transitions_are_kept_for_properties_of_runs(tmp_path, monkeypatch, reductions, plain):
+    keep(monkeypatch, plain)
     there = "forall r: Robot . actually r in room0"
     loaded = mission(LOOKS, 4, f'check {{ ltl "all come": F G {there} }}')
     runs = [each for each in loaded.properties if each.is_of_runs]

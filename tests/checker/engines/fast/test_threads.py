@@ -47,12 +47,20 @@ def small_slices(monkeypatch):
     monkeypatch.setattr(pipeline, "WORTH", 1)
 
 
-@pytest.fixture(params=[row_store.PLAIN, 1], ids=["plain", "folded"])
-def kept(request, monkeypatch):
+KEPT = {"plain": row_store.PLAIN, "folded": 1}
+MANNERS = {f"{threads} {kept}": (threads, KEPT[kept]) for kept in KEPT for threads in SEVERAL}
+
+
+def keep(monkeypatch, plain):
     """Let rows be kept as they are, or fold them all into pieces whose room grows."""
-    monkeypatch.setattr(row_store, "PLAIN", request.param)
+    monkeypatch.setattr(row_store, "PLAIN", plain)
     monkeypatch.setattr(row_store, "COMPRESSED_FROM", 0)
     monkeypatch.setattr(tree_compression, "FIRST", 4)
+
+
+@pytest.fixture(params=KEPT.values(), ids=KEPT)
+def kept(request, monkeypatch):
+    keep(monkeypatch, request.param)
 
 
 def start(name):
@@ -75,10 +83,11 @@ def seen(initial, threads, **options):
     return (rows.tolist(), list(map(int, found.origins)), numbers, inner.model.learned, interned, graph)
 
 
-@pytest.mark.usefixtures("kept")
-@crossed(UNTIMED, {threads: threads for threads in SEVERAL})
-def test_a_mission_is_explored_alike_by_any_number_of_threads(name, variation):
-    assert seen(start(name), variation) == seen(start(name), 1)
+@crossed(UNTIMED, MANNERS)
+def test_a_mission_is_explored_alike_by_any_number_of_threads(name, variation, monkeypatch):
+    threads, plain = variation
+    keep(monkeypatch, plain)
+    assert seen(start(name), threads) == seen(start(name), 1)
 
 
 @pytest.mark.usefixtures("kept")
@@ -93,12 +102,13 @@ SWARMS = {name: (body, robots, rest) for name, (body, rest, robots) in ORBITS.it
 }
 
 
-@pytest.mark.usefixtures("kept")
-@crossed(list(SWARMS), {threads: threads for threads in SEVERAL})
-def test_representatives_are_explored_alike_by_any_number_of_threads(name, variation):
+@crossed(list(SWARMS), MANNERS)
+def test_representatives_are_explored_alike_by_any_number_of_threads(name, variation, monkeypatch):
+    several, plain = variation
+    keep(monkeypatch, plain)
     initial = mission(*SWARMS[name]).initial
     alone, several = (
-        seen(initial, threads, reduce=Reduced(initial, (Reduction.SYMMETRY,))) for threads in (1, variation)
+        seen(initial, threads, reduce=Reduced(initial, (Reduction.SYMMETRY,))) for threads in (1, several)
     )
     assert several == alone
 

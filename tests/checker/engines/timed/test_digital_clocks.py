@@ -440,7 +440,7 @@ def agree_with_zones(c, data, most):
     assert_alike(*(check(c, asked, engine=each, times=True) for each in (Engine.REFERENCE, Engine.FAST)))
 
 
-@tried(540 if IS_WHOLE else 36)
+@tried(540 if IS_WHOLE else 18)
 @given(st.one_of(timed_programs(), timed_missions()), st.data())
 def test_zones_report_what_whole_ticks_report(c, data):
     agree_with_zones(c, data, 100)

@@ -69,7 +69,7 @@ def test_a_shipped_mission_is_divided(name):
         assert_divided(mission.initial, asked)
 
 
-@examples(90, deadline=None, suppress_health_check=list(HealthCheck))
+@examples(90, 6, deadline=None, suppress_health_check=list(HealthCheck))
 @given(questions())
 def test_a_generated_mission_is_divided(question):
     c, asked = question

@@ -57,7 +57,7 @@ def test_under_one_queue_the_clock_is_global():
     assert not found.times.search.is_local
 
 
-@examples(90, 9, deadline=None, suppress_health_check=list(HealthCheck))
+@examples(90, 15, deadline=None, suppress_health_check=list(HealthCheck))
 @given(timed_missions())
 def test_a_generated_mission_has_the_same_configurations_in_local_time(c):
     limits = Limits(configurations=400)
@@ -65,7 +65,7 @@ def test_a_generated_mission_has_the_same_configurations_in_local_time(c):
     assert_same(c)
 
 
-@seeds(400, 10)
+@seeds(400, 6)
 def test_a_generated_text_gets_the_same_report_in_local_time(seed):
     mission = load(text_of(seed), "")
     right = check(mission, limits=Limits(configurations=120), engine=Engine.FAST, clock=ZoneClock.GLOBAL)

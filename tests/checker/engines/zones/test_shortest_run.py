@@ -104,7 +104,7 @@ def test_without_local_time_the_search_has_one_clock():
     assert local.begun > 1
 
 
-@examples(240, 12, deadline=None, suppress_health_check=list(HealthCheck))
+@examples(240, 30, deadline=None, suppress_health_check=list(HealthCheck))
 @given(timed_missions())
 def test_a_generated_mission_has_the_same_runs_in_local_time(c):
     found = explore(c, engine=Engine.FAST, limits=Limits(configurations=400))
@@ -112,7 +112,7 @@ def test_a_generated_mission_has_the_same_runs_in_local_time(c):
     assert_same_runs(c, max(found.size // 10, 1))
 
 
-@examples(240, 12, deadline=None, suppress_health_check=list(HealthCheck))
+@examples(240, 30, deadline=None, suppress_health_check=list(HealthCheck))
 @given(st.one_of(timed_programs(), timed_missions()), st.integers(0, 5))
 def test_a_generated_mission_has_the_same_dated_traces_in_local_time(c, ticks):
     found = explore(c, engine=Engine.FAST, limits=Limits(configurations=400))

@@ -1,12 +1,13 @@
 """Timed searches that were cut go on, and those whose memory is full move to files: to the same configurations."""
 
+from functools import cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import numpy as np
 import pytest
 from checked_missions import interrupted_at
-from scale import IS_WHOLE
+from scale import IS_WHOLE, crossed
 from shipped import TIMED
 from swarms import LOOKS, mission
 from timed_missions import with_timing
@@ -59,11 +60,15 @@ def cut(name, folder, at):
     return searched(name, limits, keeping=Keeping(folder, True, "d"), report=stop, every=0.0)
 
 
-@pytest.mark.parametrize("folded", [False, True], ids=["plain", "folded"])
-@pytest.mark.parametrize("name", [*TIMED, *LOCAL])
-def test_what_was_cut_goes_on(tmp_path, monkeypatch, name, folded):
-    whole = seen(searched(name))
-    if folded:
+@cache
+def whole_of(name):
+    return seen(searched(name))
+
+
+@crossed([*TIMED, *LOCAL], {"plain": False, "folded": True})
+def test_what_was_cut_goes_on(tmp_path, monkeypatch, name, variation):
+    whole = whole_of(name)
+    if variation:
         monkeypatch.setattr(row_store, "PLAIN", 0)
         monkeypatch.setattr(row_store, "COMPRESSED_FROM", 5)
     for at in CUTS:
@@ -75,7 +80,7 @@ def test_what_was_cut_goes_on(tmp_path, monkeypatch, name, folded):
 
 @pytest.mark.parametrize("name", [*TIMED, *LOCAL])
 def test_what_fills_memory_goes_over_to_files(tmp_path, monkeypatch, name):
-    whole, spill, moved = seen(searched(name)), timed_automaton_of.Network.spill, []
+    whole, spill, moved = whole_of(name), timed_automaton_of.Network.spill, []
 
     def noted(network, folder):
         moved.append(network.size)
