@@ -13,7 +13,15 @@ from physical import circle, point
 from semantics import hypothesis_strategies
 from semantics.behaviours.commands import COMMANDS
 from semantics.behaviours.expressions import Literal
-from semantics.behaviours.reaction_rules import Pattern, PlaceVariable, Reaction, matches, moved, relinked
+from semantics.behaviours.reaction_rules import (
+    NodeVariable,
+    Pattern,
+    PlaceVariable,
+    Reaction,
+    matches,
+    moved,
+    relinked,
+)
 from semantics.behaviours.statements import ControlBy
 from semantics.control import PREMISES, Obstacle, applicable, is_consistent, obstacle, realisations
 from semantics.drive import drive
@@ -202,6 +210,23 @@ def test_the_three_obstacles_are_told_apart():
     assert meets(signature=still) is Obstacle.UNREALISABLE
 
 
+def test_of_several_matches_the_obstacle_is_that_of_the_one_that_comes_furthest():
+    x, anywhere = PlaceVariable("x"), NodeVariable("p", "Place")
+    go = Reaction(
+        "go", Pattern(("u0", anywhere), (("u0", x),)), Pattern(("u0", anywhere), (("u0", anywhere),))
+    )
+    c = mission(
+        ["sea", "area", "u0"],
+        agents={"a": ("u0", ())},
+        placed={"area": None},
+        beliefs=Beliefs({"area": REGION}),
+        signature=Signature.of([Kind("Place", frozenset({"Place", "Uav"})), Kind("Uav")]),
+    )
+    lost, still = (obstacle(c, CTR("a", COMMANDS["MOVE_HOST_TO"]("u0", place))) for place in ("area", "sea"))
+    assert (lost, still) == (Obstacle.INCONSISTENT, Obstacle.UNREALISABLE)
+    assert obstacle(c, CTR("a", go)) is Obstacle.UNREALISABLE
+
+
 def test_what_is_passed_on_the_way_has_to_be_believed_and_there():
     def meets(**more):
         c = commanding(by("MOVE_HOST_TO", "area", "sea"), entities=("sea", "base", "area", "u0"), **more)
@@ -265,26 +290,52 @@ def test_command_changes_neither_belief_nor_where_the_entity_was():
     assert isinstance(after.eta.all()[0].request, FLY)
 
 
-def two_commands(beliefs=None):
-    """Return a mission in which both agents of u0 command it, the first already on its way."""
-    statements = (move_to("area"), move_to("sea"))
-    c = mission(
-        ["base", "sea", "area", "u0"],
-        statements,
-        {"a": ("u0", (0,)), "b": ("u0", (1,))},
-        beliefs=beliefs,
-        **TIMED,
-    )
-    for rule, agent in (("req_ctr", "a"), ("req_ctr", "b"), ("command", "a")):
-        c = next(t.target for t in successors(c) if (t.label.rule, t.label.agent) == (rule, agent))
+ASKED_AND_SENT = (("req_ctr", "a"), ("req_ctr", "b"), ("command", "a"))
+
+
+def taken(c, *steps):
+    """Take the first transition of each of these rules by the agent beside it."""
+    for step in steps:
+        c = next(t.target for t in successors(c) if (t.label.rule, t.label.agent) == step)
     return c
 
 
+def two_commands(*places, **more):
+    """Return a mission in which both agents of u0 command it, the first already on its way."""
+    agents = {"a": ("u0", (0,)), "b": ("u0", (1,))}
+    c = mission(["base", "sea", "area", "u0"], tuple(map(move_to, places)), agents, **TIMED, **more)
+    return taken(c, *ASKED_AND_SENT)
+
+
 def test_a_command_for_an_entity_in_transit_waits_and_is_not_inconsistent():
-    c = two_commands()
+    c = two_commands("area", "sea")
     assert enabled(c) == ["commit"]
     assert obstacle(c, c.eta.of("b")[0].request) is None
     assert enabled(run(c, "commit")) == ["command"]
+
+
+IN_SEA = Placed(point(36.55, -8.5))
+
+
+def test_a_command_waits_though_what_is_in_transit_has_not_left_its_place():
+    c = two_commands("area", "base", placed={"u0": IN_SEA})
+    assert c.structure.physical.abstract_parent("u0") == "sea"
+    assert enabled(c) == ["commit"]
+    assert obstacle(c, c.eta.of("b")[0].request) is None
+
+
+def test_a_command_waits_for_each_that_it_moves():
+    pair = Reaction(
+        "pair",
+        Pattern(("u0", "u1", "base", "sea"), (("u0", "sea"), ("u1", "sea"))),
+        Pattern(("u0", "u1", "base", "sea"), (("u0", "base"), ("u1", "base"))),
+    )
+    placed = {"u0": IN_SEA, "u1": Placed(point(36.56, -8.5))}
+    agents = {"a": ("u0", (0,)), "b": ("u1", ())}
+    c = mission(["base", "sea", "area", "u0", "u1"], (move_to("area"),), agents, placed=placed, **TIMED)
+    asked = taken(c, ("req_ctr", "a")).with_({("line", "b"): (CTR("b", pair),)})
+    assert enabled(asked) == ["command", "command"]
+    assert enabled(taken(asked, ("command", "a"))) == ["commit"]
 
 
 def test_a_command_waits_for_the_carrier_too_even_to_put_something_down():
@@ -296,8 +347,7 @@ def test_a_command_waits_for_the_carrier_too_even_to_put_something_down():
         placed={"crate": aboard("ship", "crate")},
         **TIMED,
     )
-    for rule, agent in (("req_ctr", "a"), ("req_ctr", "b"), ("command", "a")):
-        c = next(t.target for t in successors(c) if (t.label.rule, t.label.agent) == (rule, agent))
+    c = taken(c, *ASKED_AND_SENT)
     assert enabled(c) == ["commit"]
     assert obstacle(c, c.eta.of("b")[0].request) is None
 
@@ -359,6 +409,22 @@ def test_commit_requires_its_unmoved_part_to_hold_in_belief_and_in_fact():
     assert (
         obstacle(c.with_({("parent", "u0"): REGION}), fly) is None
     )  # the moved node's own parent may change
+
+
+def test_commit_requires_what_has_no_site_to_be_empty_still_in_belief_and_in_fact():
+    x = PlaceVariable("x")
+    alone = Reaction(
+        "alone",
+        Pattern(("u0", "area"), (("u0", x),), closed=("area",)),
+        Pattern(("u0", "area"), (("u0", "area"),), closed=("area",)),
+    )
+    c = mission(["base", "area", "u0", "u1"], agents={"a": ("u0", ())}, **TIMED)
+    c = run(c.with_({("line", "a"): (CTR("a", alone),)}), "command")
+    fly = c.eta.all()[0].request
+    assert enabled(c) == ["commit"]
+    assert obstacle(c.with_({("parent", "u1"): "area"}), fly) is Obstacle.UNMATCHED
+    entered = c.with_({("placement", "u1"): Placed(point(36.65, -8.65))})
+    assert obstacle(entered, fly) is Obstacle.INCONSISTENT
 
 
 def test_commit_requires_every_node_to_be_outside_of_what_is_passive():
