@@ -324,18 +324,65 @@ def test_a_command_waits_though_what_is_in_transit_has_not_left_its_place():
     assert obstacle(c, c.eta.of("b")[0].request) is None
 
 
-def test_a_command_waits_for_each_that_it_moves():
-    pair = Reaction(
-        "pair",
+def pair():
+    """Return u0 and u1 in the sea, u0's agent about to ask for a move, and a request to move both at once."""
+    both = Reaction(
+        "both",
         Pattern(("u0", "u1", "base", "sea"), (("u0", "sea"), ("u1", "sea"))),
         Pattern(("u0", "u1", "base", "sea"), (("u0", "base"), ("u1", "base"))),
     )
     placed = {"u0": IN_SEA, "u1": Placed(point(36.56, -8.5))}
     agents = {"a": ("u0", (0,)), "b": ("u1", ())}
     c = mission(["base", "sea", "area", "u0", "u1"], (move_to("area"),), agents, placed=placed, **TIMED)
-    asked = taken(c, ("req_ctr", "a")).with_({("line", "b"): (CTR("b", pair),)})
+    return c.with_({("line", "b"): (CTR("b", both),)})
+
+
+def test_a_command_waits_for_each_that_it_moves():
+    asked = taken(pair(), ("req_ctr", "a"))
     assert enabled(asked) == ["command", "command"]
     assert enabled(taken(asked, ("command", "a"))) == ["commit"]
+
+
+def test_commit_requires_each_that_travels_to_be_on_its_way():
+    c = run(pair(), "command")
+    (pending,) = c.eta.all()
+    assert "commit" in enabled(c)
+    for name in ("u0", "u1"):
+        back = c.with_({("placement", name): IN_SEA})
+        assert list(commit(back, "b")) == []
+        assert obstacle(back, pending.request) is Obstacle.INCONSISTENT
+
+
+def test_commit_requires_the_links_of_what_travels():
+    authority = {"gcs0": ["control:0"], "u0": ["control:0"]}
+    flying = run(
+        commanding(
+            by("MOVE", "u0", "area"),
+            entities=("base", "area", "u0", "gcs0"),
+            host="gcs0",
+            channels=authority,
+        ),
+        "command",
+    )
+    fly = flying.eta.all()[0].request
+    assert obstacle(flying, fly) is None
+    assert obstacle(flying.with_({("links", "u0"): ()}), fly) is Obstacle.UNMATCHED
+    assert obstacle(flying.with_({("channels", "u0"): ()}), fly) is Obstacle.INCONSISTENT
+
+
+def test_what_is_put_down_on_arrival_is_carried_on_the_way():
+    x = PlaceVariable("x")
+    land = Reaction(
+        "land",
+        Pattern(("ship", "crate", "area"), (("ship", x), ("crate", "ship"))),
+        Pattern(("ship", "crate", "area"), (("ship", "area"), ("crate", "area"))),
+    )
+    placed = {"crate": aboard("ship", "crate")}
+    c = mission(["sea", "area", "ship", "crate"], agents={"a": ("ship", ())}, placed=placed, **TIMED)
+    flying = run(c.with_({("line", "a"): (CTR("a", land),)}), "command")
+    assert flying.structure.physical.carrier("crate") == "ship"
+    arrived = run(flying, "commit").structure.physical
+    assert [arrived.abstract_parent(name) for name in ("ship", "crate")] == ["area", "area"]
 
 
 def test_a_command_waits_for_the_carrier_too_even_to_put_something_down():
@@ -461,10 +508,23 @@ def test_a_lost_target_is_inconsistent():
     assert obstacle(c, c.eta.all()[0].request) is Obstacle.INCONSISTENT
 
 
-def test_link_changes_commit_at_once():
-    c = commanding(by("CONNECT_HOST_TO", "u1"), entities=("base", "u0", "u1"), channels={"u1": ["w"]})
+@pytest.mark.parametrize(
+    ("request_of", "host", "links"),
+    [
+        (by("CONNECT_HOST_TO", "u1"), "u0", ("control:0", "w")),
+        (by("DISCONNECT_HOST_FROM", "u1"), "ship", ()),
+        (by("HAND", "u0", "gcs1"), "gcs0", ("control:1",)),
+    ],
+    ids=["connected", "disconnected", "handed over"],
+)
+def test_link_changes_commit_at_once_in_belief_and_in_fact(request_of, host, links):
+    channels = {"u0": ["control:0"], "u1": ["w"], "ship": ["w"], "gcs0": ["control:0"], "gcs1": ["control:1"]}
+    entities = ("base", "u0", "u1", "ship", "gcs0", "gcs1")
+    c = commanding(request_of, entities=entities, host=host, channels=channels)
     assert enabled(c) == ["actuate"]
-    assert run(c, "actuate").structure.physical.links("u0") == ("w",)
+    after = run(c, "actuate").structure
+    changed = "u0" if host == "gcs0" else host
+    assert (after.logical.links(changed), after.physical.links(changed)) == (links, links)
 
 
 def test_a_command_from_a_carrier_keeps_the_shape_of_what_is_carried():
@@ -592,3 +652,11 @@ def test_each_premise_is_the_first_to_fail_somewhere():
         failing = [next(p for p in PREMISES[of] if not p.holds(c, request, match)) for match in ways]
         assert {each.holds.__name__ for each in failing} == {name}
         assert obstacle(c, request) is failing[0].otherwise
+
+
+@pytest.mark.parametrize("premise", ["involves_host", "leaves_forest", "is_consistent"])
+def test_a_match_is_applicable_that_fulfils_each_premise_about_l(premise):
+    c = first_failing()[CTR, premise]
+    (pending,) = c.eta.all()
+    found = list(applicable(c, pending.request.agent, pending.request.reaction))
+    assert bool(found) is (premise == "is_consistent")
