@@ -324,8 +324,8 @@ def test_a_command_waits_though_what_is_in_transit_has_not_left_its_place():
     assert obstacle(c, c.eta.of("b")[0].request) is None
 
 
-def pair():
-    """Return u0 and u1 in the sea, u0's agent about to ask for a move, and a request to move both at once."""
+def pair(place="area"):
+    """Return u0 and u1 in the sea, u0's agent about to move it to a place, and a request to move both at once."""
     both = Reaction(
         "both",
         Pattern(("u0", "u1", "base", "sea"), (("u0", "sea"), ("u1", "sea"))),
@@ -333,7 +333,7 @@ def pair():
     )
     placed = {"u0": IN_SEA, "u1": Placed(point(36.56, -8.5))}
     agents = {"a": ("u0", (0,)), "b": ("u1", ())}
-    c = mission(["base", "sea", "area", "u0", "u1"], (move_to("area"),), agents, placed=placed, **TIMED)
+    c = mission(["base", "sea", "area", "u0", "u1"], (move_to(place),), agents, placed=placed, **TIMED)
     return c.with_({("line", "b"): (CTR("b", both),)})
 
 
@@ -341,6 +341,33 @@ def test_a_command_waits_for_each_that_it_moves():
     asked = taken(pair(), ("req_ctr", "a"))
     assert enabled(asked) == ["command", "command"]
     assert enabled(taken(asked, ("command", "a"))) == ["commit"]
+
+
+def test_it_waits_though_only_one_of_those_that_it_moves_is_away():
+    c = taken(pair("base"), ("req_ctr", "a"), ("command", "a"))
+    assert c.structure.physical.abstract_parent("u0") == REGION
+    assert enabled(c) == ["commit"]
+    assert obstacle(c, c.eta.of("b")[0].request) is None
+
+
+def test_what_is_linked_in_vain_does_not_wait_for_what_is_in_transit():
+    channels = {"u0": ["control:0"], "gcs0": ["control:0"], "gcs1": ["control:1"]}
+    agents = {"a": ("u0", (0,)), "b": ("gcs0", (1,))}
+    statements = (move_to("area"), by("HAND", "u0", "gcs1"))
+    entities = ["base", "area", "u0", "gcs0", "gcs1"]
+    c = taken(mission(entities, statements, agents, channels=channels, **TIMED), *ASKED_AND_SENT)
+    assert enabled(c) == ["actuate", "commit"]
+    dropped = c.with_({("channels", "u0"): ()})
+    assert obstacle(dropped, c.eta.of("b")[0].request) is Obstacle.INCONSISTENT
+
+
+def test_what_is_not_matched_does_not_wait():
+    others = Reaction(
+        "others", Pattern(("u1", "base"), (("u1", "sea"),)), Pattern(("u1", "base"), (("u1", "base"),))
+    )
+    c = mission(["base", "sea", "area", "u0", "u1"], agents={"a": ("u0", ())}, **TIMED)
+    c = c.with_({("placement", "u1"): InTransit(IN_SEA, "area"), ("parent", "u1"): "sea"})
+    assert obstacle(c, CTR("a", others)) is Obstacle.UNMATCHED
 
 
 def test_commit_requires_each_that_travels_to_be_on_its_way():
