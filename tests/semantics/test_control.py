@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from scale import examples
 from small_missions import SHAPES, aboard, enabled, mission, move_to, run
 
-from physical import circle, point
+from physical import Band, centroid, circle, point
 from semantics import hypothesis_strategies
 from semantics.behaviours.commands import COMMANDS
 from semantics.behaviours.expressions import Literal
@@ -31,7 +31,7 @@ from semantics.state.initial import Beliefs
 from semantics.state.physical_model import Carried, InTransit, Placed
 from semantics.state.relations import Linked
 from semantics.state.requests import CTR, FLY
-from semantics.state.setting import Control, Setting
+from semantics.state.setting import Control, Scheduler, Setting
 from semantics.state.signature import REGION, Kind, Signature
 from semantics.successors import successors
 
@@ -78,6 +78,20 @@ def test_a_mover_is_placed_at_the_centroid_unless_a_smaller_place_would_swallow_
     after = run(c, "actuate").structure
     assert after.physical.abstract_parent("u0") == "area"  # and not the spill at its centre
     assert not after.physical.contains("spill", "u0")
+
+
+@pytest.mark.parametrize(("band", "swallows"), [(None, True), (Band(0, 60), True), (Band(100, 200), False)])
+def test_a_smaller_place_swallows_only_what_is_at_its_altitude(band, swallows):
+    low = Placed(SHAPES["u0"].geometry, Band(20, 30))
+    c = commanding(
+        move_to("area"),
+        entities=("sea", "area", "base", "spill", "u0"),
+        placed={"spill": Placed(SHAPES["spill"].geometry, band), "u0": low},
+        control=Control.ATOMIC,
+    )
+    after = run(c, "actuate").structure.physical
+    assert after.abstract_parent("u0") == "area"
+    assert (after.placement("u0").geometry != centroid(SHAPES["area"].geometry)) is swallows
 
 
 @pytest.mark.parametrize(("place", "swallowed"), [("area", False), ("base", True)])
@@ -129,6 +143,71 @@ def test_what_is_carried_may_be_put_into_what_carries_its_carrier():
         placed={"boat": aboard("ship", "boat"), "crate": aboard("boat", "crate")},
     )
     assert run(c, "actuate").structure.physical.carrier("crate") == "ship"
+
+
+@pytest.mark.parametrize("by_ship", [True, False])
+def test_what_is_carried_may_be_put_into_a_carrier_that_is_aboard_too(by_ship):
+    c = commanding(
+        by("PUT", "crate", "boat"),
+        entities=("sea", "ship", "boat", "crate"),
+        host="ship",
+        placed={"crate": aboard("ship", "crate")} | ({"boat": aboard("ship", "boat")} if by_ship else {}),
+    )
+    assert enabled(c) == (["actuate"] if by_ship else [])
+    if by_ship:
+        assert run(c, "actuate").structure.physical.carrier("crate") == "boat"
+    else:
+        assert obstacle(c, c.eta.all()[0].request) is Obstacle.UNREALISABLE
+
+
+def test_what_is_put_down_is_where_a_of_p_has_it_and_not_where_belief_is_coarser():
+    c = commanding(
+        by("PUT", "crate", "sea"),
+        entities=("sea", "area", "ship", "crate"),
+        host="ship",
+        placed={"ship": Placed(circle((36.65, -8.65), 200)), "crate": aboard("ship", "crate")},
+        beliefs=Beliefs({"ship": "sea"}),
+    )
+    assert enabled(c) == []
+    assert obstacle(c, c.eta.all()[0].request) is Obstacle.UNREALISABLE
+
+
+def test_what_flies_to_a_carrier_is_carried():
+    c = commanding(move_to("ship"), entities=("sea", "base", "ship", "u0"))
+    assert run(c, "command", "commit").structure.physical.carrier("u0") == "ship"
+
+
+def test_nothing_can_be_moved_out_of_every_place():
+    x, y = PlaceVariable("x"), PlaceVariable("y")
+    follow = Reaction(
+        "follow",
+        Pattern(("u0", "gcs0"), (("u0", x), ("gcs0", y))),
+        Pattern(("u0", "gcs0"), (("u0", y), ("gcs0", y))),
+    )
+    c = mission(["base", "u0", "gcs0"], agents={"a": ("u0", ())})
+    assert c.structure.physical.abstract_parent("gcs0") == REGION
+    assert obstacle(c, CTR("a", follow)) is Obstacle.UNREALISABLE
+
+
+def test_what_a_later_move_undoes_is_unrealisable():
+    """The boat leaves from under what has just been placed within it."""
+    x, y = PlaceVariable("x"), PlaceVariable("y")
+    nodes = ("u0", "boat", "area")
+    meet = Reaction(
+        "meet",
+        Pattern(nodes, (("u0", x), ("boat", y))),
+        Pattern(nodes, (("u0", "boat"), ("boat", "area"))),
+    )
+    kinds = [
+        Kind("Place", frozenset({"Uav", "Vessel"})),
+        Kind("Vessel", frozenset({"Uav"}), driven=True),
+        Kind("Uav", driven=True),
+    ]
+    c = mission(
+        ["sea", "base", "area", "boat", "u0"], agents={"a": ("u0", ())}, signature=Signature.of(kinds)
+    )
+    assert obstacle(c, CTR("a", COMMANDS["MOVE_HOST_TO"]("u0", "boat"))) is None
+    assert obstacle(c, CTR("a", meet)) is Obstacle.UNREALISABLE
 
 
 def test_what_is_aboard_already_may_be_put_there_where_l_is_coarser():
@@ -552,6 +631,32 @@ def test_link_changes_commit_at_once_in_belief_and_in_fact(request_of, host, lin
     after = run(c, "actuate").structure
     changed = "u0" if host == "gcs0" else host
     assert (after.logical.links(changed), after.physical.links(changed)) == (links, links)
+
+
+def test_one_way_to_make_a_control_true_hides_no_other():
+    """To the area and the spill it flies; in the sea it is put down, and aboard it is already."""
+    anywhere = NodeVariable("p")
+    leave = Reaction(
+        "leave", Pattern(("u0", anywhere), (("u0", "ship"),)), Pattern(("u0", anywhere), (("u0", anywhere),))
+    )
+    c = mission(
+        ["sea", "area", "ship", "spill", "u0"],
+        agents={"a": ("u0", ())},
+        placed={"u0": aboard("ship", "u0")},
+        **TIMED,
+    )
+    c = c.with_({("line", "a"): (CTR("a", leave),)})
+    assert enabled(c) == ["actuate", "actuate", "command", "command"]
+
+
+def test_in_no_order_a_flight_ends_though_another_control_waits():
+    c = commanding(
+        move_to("area"),
+        move_to("base"),
+        entities=("sea", "area", "base", "u0"),
+        scheduler=Scheduler.UNORDERED,
+    )
+    assert enabled(run(c, "req_ctr", "command")) == ["commit"]
 
 
 def test_a_command_from_a_carrier_keeps_the_shape_of_what_is_carried():
