@@ -184,6 +184,13 @@ def test_a_guard_on_a_message_decides_what_follows_only_where_the_wait_would_end
     assert stale(reacting(free, then=(6,))) == {"b"}
 
 
+def test_what_is_done_when_a_wait_ends_rests_on_the_message_that_a_guard_refused():
+    full = Case(Anything("m", "message"), Apply("not", (Variable("m"),)), (4,))
+    assert stale(reacting(full, after=After(1.0, (6,)))) == {"b"}
+    word = Case(Exactly("stop"), None, ())
+    assert stale(reacting(word, after=After(1.0, (6,)))) == set()
+
+
 def told(*sender):
     """Return a mission in which a tells b what it saw of the area, and enters it itself."""
     statements = (
