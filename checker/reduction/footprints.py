@@ -332,7 +332,10 @@ class _Reacting:
             self.reads |= self.of.where(inside) | self.of.there(inside)
 
     def placing(self) -> None:
-        """Bound `moved`, `stays_forest` and `drive`: the nodes that may move, and their targets."""
+        """Bound `moved`, `stays_forest` and `drive`: the nodes that may move, and what is around their targets.
+
+        `parents` has bounded what decides where they are.
+        """
         pairs = self.reaction.moves
         moving = frozenset[Name]().union(*(self.nodes_of(node) for node, _ in pairs)) & self.bounds.names
         places = frozenset[Name]().union(
@@ -340,7 +343,6 @@ class _Reacting:
         ) & self.bounds.names  # fmt: skip
         for node in moving:
             self.writes |= self.slots.of("parent", [node]) | self.slots.of("placement", [node])
-            self.reads |= self.of.where({node})
         above = places.union(*map(self.bounds.above, places))
         if above & moving:
             self.reads |= self.slots.of("parent", above)

@@ -65,6 +65,22 @@ WITHOUT = {
     "snd: its receiver is there": (snd, "a", run(pair(NOBODY, channels=ON_W), "req_snd")),
     "snd: a link in belief": (snd, "a", run(pair(GO, **linked(ON_W, UNLINKED)), "req_snd")),
     "snd: a link in fact": (snd, "a", run(pair(GO, **linked({}, ON_W)), "req_snd")),
+    "snd: a link in belief of its sender": (
+        snd,
+        "a",
+        run(pair(GO, **linked(ON_W, {"u0": [], "u1": ["w"]})), "req_snd"),
+    ),
+    "snd: a link in belief of its receiver": (
+        snd,
+        "a",
+        run(pair(GO, **linked(ON_W, {"u0": ["w"], "u1": []})), "req_snd"),
+    ),
+    "snd: a link in fact of its sender": (snd, "a", run(pair(GO, **linked({"u1": ["w"]}, ON_W)), "req_snd")),
+    "snd: a link in fact of its receiver": (
+        snd,
+        "a",
+        run(pair(GO, **linked({"u0": ["w"]}, ON_W)), "req_snd"),
+    ),
     "snd: one link": (snd, "a", run(pair(GO, **linked(ON_W, {"u0": ["v"], "u1": ["v"]})), "req_snd")),
     "rcv_msg: the agent is at a react": (rcv_msg, "b", run(pair(GO, channels=ON_W), "req_snd", "snd")),
     "rcv_msg: there is a message": (rcv_msg, "b", pair(hears(), a=(), b=(0,))),
@@ -122,6 +138,27 @@ def test_snd_requires_a_channel_that_is_up():
 def test_agents_on_one_node_need_no_link():
     c = mission(["u0"], (GO,), {"a": ("u0", (0,)), "b": ("u0", ())})
     assert run(c, "req_snd", "snd").alpha.mailbox("b") == (Text("go"),)
+
+
+def test_a_message_stands_in_no_line():
+    c = run(pair(Observe(around()), GO, a=(0, 1), channels=ON_W), "req_obs", "req_snd")
+    assert enabled(c) == ["sense", "snd"]
+
+
+def test_a_message_that_cannot_be_delivered_holds_up_no_other():
+    both = (GO, Send(Literal(Text("go")), Literal("c")))
+    agents = {"a": ("u0", (0, 1)), "b": ("u1", ()), "c": ("u0", ())}
+    c = run(mission(["base", "u0", "u1"], both, agents), "req_snd", "req_snd")
+    (t,) = snd(c, "a")
+    assert str(t.label) == '⟨snd : SND(a, c, "go")⟩'
+
+
+def test_a_message_that_no_case_takes_hides_no_other():
+    both = (Send(Literal("x"), Literal("b")), Send(Literal("y"), Literal("b")))
+    c = pair(*both, hears(Case(Exactly("y"), None, ())), a=(0, 1), b=(2,), channels=ON_W)
+    c = run(c, "req_snd", "req_snd", "snd", "snd")
+    (t,) = rcv_msg(c, "b")
+    assert t.target.alpha.mailbox("b") == ("x",)
 
 
 def test_a_mailbox_has_no_order_of_arrival():

@@ -9,11 +9,19 @@ from hypothesis import strategies as st
 from scale import examples
 from small_missions import SHAPES, aboard, enabled, mission, move_to, run
 
-from physical import circle, point
+from physical import Band, centroid, circle, point
 from semantics import hypothesis_strategies
 from semantics.behaviours.commands import COMMANDS
 from semantics.behaviours.expressions import Literal
-from semantics.behaviours.reaction_rules import Pattern, PlaceVariable, Reaction, matches, moved, relinked
+from semantics.behaviours.reaction_rules import (
+    NodeVariable,
+    Pattern,
+    PlaceVariable,
+    Reaction,
+    matches,
+    moved,
+    relinked,
+)
 from semantics.behaviours.statements import ControlBy
 from semantics.control import PREMISES, Obstacle, applicable, is_consistent, obstacle, realisations
 from semantics.drive import drive
@@ -23,7 +31,7 @@ from semantics.state.initial import Beliefs
 from semantics.state.physical_model import Carried, InTransit, Placed
 from semantics.state.relations import Linked
 from semantics.state.requests import CTR, FLY
-from semantics.state.setting import Control, Setting
+from semantics.state.setting import Control, Scheduler, Setting
 from semantics.state.signature import REGION, Kind, Signature
 from semantics.successors import successors
 
@@ -70,6 +78,20 @@ def test_a_mover_is_placed_at_the_centroid_unless_a_smaller_place_would_swallow_
     after = run(c, "actuate").structure
     assert after.physical.abstract_parent("u0") == "area"  # and not the spill at its centre
     assert not after.physical.contains("spill", "u0")
+
+
+@pytest.mark.parametrize(("band", "swallows"), [(None, True), (Band(0, 60), True), (Band(100, 200), False)])
+def test_a_smaller_place_swallows_only_what_is_at_its_altitude(band, swallows):
+    low = Placed(SHAPES["u0"].geometry, Band(20, 30))
+    c = commanding(
+        move_to("area"),
+        entities=("sea", "area", "base", "spill", "u0"),
+        placed={"spill": Placed(SHAPES["spill"].geometry, band), "u0": low},
+        control=Control.ATOMIC,
+    )
+    after = run(c, "actuate").structure.physical
+    assert after.abstract_parent("u0") == "area"
+    assert (after.placement("u0").geometry != centroid(SHAPES["area"].geometry)) is swallows
 
 
 @pytest.mark.parametrize(("place", "swallowed"), [("area", False), ("base", True)])
@@ -121,6 +143,71 @@ def test_what_is_carried_may_be_put_into_what_carries_its_carrier():
         placed={"boat": aboard("ship", "boat"), "crate": aboard("boat", "crate")},
     )
     assert run(c, "actuate").structure.physical.carrier("crate") == "ship"
+
+
+@pytest.mark.parametrize("by_ship", [True, False])
+def test_what_is_carried_may_be_put_into_a_carrier_that_is_aboard_too(by_ship):
+    c = commanding(
+        by("PUT", "crate", "boat"),
+        entities=("sea", "ship", "boat", "crate"),
+        host="ship",
+        placed={"crate": aboard("ship", "crate")} | ({"boat": aboard("ship", "boat")} if by_ship else {}),
+    )
+    assert enabled(c) == (["actuate"] if by_ship else [])
+    if by_ship:
+        assert run(c, "actuate").structure.physical.carrier("crate") == "boat"
+    else:
+        assert obstacle(c, c.eta.all()[0].request) is Obstacle.UNREALISABLE
+
+
+def test_what_is_put_down_is_where_a_of_p_has_it_and_not_where_belief_is_coarser():
+    c = commanding(
+        by("PUT", "crate", "sea"),
+        entities=("sea", "area", "ship", "crate"),
+        host="ship",
+        placed={"ship": Placed(circle((36.65, -8.65), 200)), "crate": aboard("ship", "crate")},
+        beliefs=Beliefs({"ship": "sea"}),
+    )
+    assert enabled(c) == []
+    assert obstacle(c, c.eta.all()[0].request) is Obstacle.UNREALISABLE
+
+
+def test_what_flies_to_a_carrier_is_carried():
+    c = commanding(move_to("ship"), entities=("sea", "base", "ship", "u0"))
+    assert run(c, "command", "commit").structure.physical.carrier("u0") == "ship"
+
+
+def test_nothing_can_be_moved_out_of_every_place():
+    x, y = PlaceVariable("x"), PlaceVariable("y")
+    follow = Reaction(
+        "follow",
+        Pattern(("u0", "gcs0"), (("u0", x), ("gcs0", y))),
+        Pattern(("u0", "gcs0"), (("u0", y), ("gcs0", y))),
+    )
+    c = mission(["base", "u0", "gcs0"], agents={"a": ("u0", ())})
+    assert c.structure.physical.abstract_parent("gcs0") == REGION
+    assert obstacle(c, CTR("a", follow)) is Obstacle.UNREALISABLE
+
+
+def test_what_a_later_move_undoes_is_unrealisable():
+    """The boat leaves from under what has just been placed within it."""
+    x, y = PlaceVariable("x"), PlaceVariable("y")
+    nodes = ("u0", "boat", "area")
+    meet = Reaction(
+        "meet",
+        Pattern(nodes, (("u0", x), ("boat", y))),
+        Pattern(nodes, (("u0", "boat"), ("boat", "area"))),
+    )
+    kinds = [
+        Kind("Place", frozenset({"Uav", "Vessel"})),
+        Kind("Vessel", frozenset({"Uav"}), driven=True),
+        Kind("Uav", driven=True),
+    ]
+    c = mission(
+        ["sea", "base", "area", "boat", "u0"], agents={"a": ("u0", ())}, signature=Signature.of(kinds)
+    )
+    assert obstacle(c, CTR("a", COMMANDS["MOVE_HOST_TO"]("u0", "boat"))) is None
+    assert obstacle(c, CTR("a", meet)) is Obstacle.UNREALISABLE
 
 
 def test_what_is_aboard_already_may_be_put_there_where_l_is_coarser():
@@ -202,6 +289,23 @@ def test_the_three_obstacles_are_told_apart():
     assert meets(signature=still) is Obstacle.UNREALISABLE
 
 
+def test_of_several_matches_the_obstacle_is_that_of_the_one_that_comes_furthest():
+    x, anywhere = PlaceVariable("x"), NodeVariable("p", "Place")
+    go = Reaction(
+        "go", Pattern(("u0", anywhere), (("u0", x),)), Pattern(("u0", anywhere), (("u0", anywhere),))
+    )
+    c = mission(
+        ["sea", "area", "u0"],
+        agents={"a": ("u0", ())},
+        placed={"area": None},
+        beliefs=Beliefs({"area": REGION}),
+        signature=Signature.of([Kind("Place", frozenset({"Place", "Uav"})), Kind("Uav")]),
+    )
+    lost, still = (obstacle(c, CTR("a", COMMANDS["MOVE_HOST_TO"]("u0", place))) for place in ("area", "sea"))
+    assert (lost, still) == (Obstacle.INCONSISTENT, Obstacle.UNREALISABLE)
+    assert obstacle(c, CTR("a", go)) is Obstacle.UNREALISABLE
+
+
 def test_what_is_passed_on_the_way_has_to_be_believed_and_there():
     def meets(**more):
         c = commanding(by("MOVE_HOST_TO", "area", "sea"), entities=("sea", "base", "area", "u0"), **more)
@@ -265,26 +369,126 @@ def test_command_changes_neither_belief_nor_where_the_entity_was():
     assert isinstance(after.eta.all()[0].request, FLY)
 
 
-def two_commands(beliefs=None):
-    """Return a mission in which both agents of u0 command it, the first already on its way."""
-    statements = (move_to("area"), move_to("sea"))
-    c = mission(
-        ["base", "sea", "area", "u0"],
-        statements,
-        {"a": ("u0", (0,)), "b": ("u0", (1,))},
-        beliefs=beliefs,
-        **TIMED,
-    )
-    for rule, agent in (("req_ctr", "a"), ("req_ctr", "b"), ("command", "a")):
-        c = next(t.target for t in successors(c) if (t.label.rule, t.label.agent) == (rule, agent))
+ASKED_AND_SENT = (("req_ctr", "a"), ("req_ctr", "b"), ("command", "a"))
+
+
+def taken(c, *steps):
+    """Take the first transition of each of these rules by the agent beside it."""
+    for step in steps:
+        c = next(t.target for t in successors(c) if (t.label.rule, t.label.agent) == step)
     return c
 
 
+def two_commands(*places, **more):
+    """Return a mission in which both agents of u0 command it, the first already on its way."""
+    agents = {"a": ("u0", (0,)), "b": ("u0", (1,))}
+    c = mission(["base", "sea", "area", "u0"], tuple(map(move_to, places)), agents, **TIMED, **more)
+    return taken(c, *ASKED_AND_SENT)
+
+
 def test_a_command_for_an_entity_in_transit_waits_and_is_not_inconsistent():
-    c = two_commands()
+    c = two_commands("area", "sea")
     assert enabled(c) == ["commit"]
     assert obstacle(c, c.eta.of("b")[0].request) is None
     assert enabled(run(c, "commit")) == ["command"]
+
+
+IN_SEA = Placed(point(36.55, -8.5))
+
+
+def test_a_command_waits_though_what_is_in_transit_has_not_left_its_place():
+    c = two_commands("area", "base", placed={"u0": IN_SEA})
+    assert c.structure.physical.abstract_parent("u0") == "sea"
+    assert enabled(c) == ["commit"]
+    assert obstacle(c, c.eta.of("b")[0].request) is None
+
+
+def pair(place="area"):
+    """Return u0 and u1 in the sea, u0's agent about to move it to a place, and a request to move both at once."""
+    both = Reaction(
+        "both",
+        Pattern(("u0", "u1", "base", "sea"), (("u0", "sea"), ("u1", "sea"))),
+        Pattern(("u0", "u1", "base", "sea"), (("u0", "base"), ("u1", "base"))),
+    )
+    placed = {"u0": IN_SEA, "u1": Placed(point(36.56, -8.5))}
+    agents = {"a": ("u0", (0,)), "b": ("u1", ())}
+    c = mission(["base", "sea", "area", "u0", "u1"], (move_to(place),), agents, placed=placed, **TIMED)
+    return c.with_({("line", "b"): (CTR("b", both),)})
+
+
+def test_a_command_waits_for_each_that_it_moves():
+    asked = taken(pair(), ("req_ctr", "a"))
+    assert enabled(asked) == ["command", "command"]
+    assert enabled(taken(asked, ("command", "a"))) == ["commit"]
+
+
+def test_it_waits_though_only_one_of_those_that_it_moves_is_away():
+    c = taken(pair("base"), ("req_ctr", "a"), ("command", "a"))
+    assert c.structure.physical.abstract_parent("u0") == REGION
+    assert enabled(c) == ["commit"]
+    assert obstacle(c, c.eta.of("b")[0].request) is None
+
+
+def test_what_is_linked_in_vain_does_not_wait_for_what_is_in_transit():
+    channels = {"u0": ["control:0"], "gcs0": ["control:0"], "gcs1": ["control:1"]}
+    agents = {"a": ("u0", (0,)), "b": ("gcs0", (1,))}
+    statements = (move_to("area"), by("HAND", "u0", "gcs1"))
+    entities = ["base", "area", "u0", "gcs0", "gcs1"]
+    c = taken(mission(entities, statements, agents, channels=channels, **TIMED), *ASKED_AND_SENT)
+    assert enabled(c) == ["actuate", "commit"]
+    dropped = c.with_({("channels", "u0"): ()})
+    assert obstacle(dropped, c.eta.of("b")[0].request) is Obstacle.INCONSISTENT
+
+
+def test_what_is_not_matched_does_not_wait():
+    others = Reaction(
+        "others", Pattern(("u1", "base"), (("u1", "sea"),)), Pattern(("u1", "base"), (("u1", "base"),))
+    )
+    c = mission(["base", "sea", "area", "u0", "u1"], agents={"a": ("u0", ())}, **TIMED)
+    c = c.with_({("placement", "u1"): InTransit(IN_SEA, "area"), ("parent", "u1"): "sea"})
+    assert obstacle(c, CTR("a", others)) is Obstacle.UNMATCHED
+
+
+def test_commit_requires_each_that_travels_to_be_on_its_way():
+    c = run(pair(), "command")
+    (pending,) = c.eta.all()
+    assert "commit" in enabled(c)
+    for name in ("u0", "u1"):
+        back = c.with_({("placement", name): IN_SEA})
+        assert list(commit(back, "b")) == []
+        assert obstacle(back, pending.request) is Obstacle.INCONSISTENT
+
+
+def test_commit_requires_the_links_of_what_travels():
+    authority = {"gcs0": ["control:0"], "u0": ["control:0"]}
+    flying = run(
+        commanding(
+            by("MOVE", "u0", "area"),
+            entities=("base", "area", "u0", "gcs0"),
+            host="gcs0",
+            channels=authority,
+        ),
+        "command",
+    )
+    fly = flying.eta.all()[0].request
+    assert obstacle(flying, fly) is None
+    assert obstacle(flying.with_({("links", "u0"): ()}), fly) is Obstacle.UNMATCHED
+    assert obstacle(flying.with_({("channels", "u0"): ()}), fly) is Obstacle.INCONSISTENT
+
+
+def test_what_is_put_down_on_arrival_is_carried_on_the_way():
+    x = PlaceVariable("x")
+    land = Reaction(
+        "land",
+        Pattern(("ship", "crate", "area"), (("ship", x), ("crate", "ship"))),
+        Pattern(("ship", "crate", "area"), (("ship", "area"), ("crate", "area"))),
+    )
+    placed = {"crate": aboard("ship", "crate")}
+    c = mission(["sea", "area", "ship", "crate"], agents={"a": ("ship", ())}, placed=placed, **TIMED)
+    flying = run(c.with_({("line", "a"): (CTR("a", land),)}), "command")
+    assert flying.structure.physical.carrier("crate") == "ship"
+    arrived = run(flying, "commit").structure.physical
+    assert [arrived.abstract_parent(name) for name in ("ship", "crate")] == ["area", "area"]
 
 
 def test_a_command_waits_for_the_carrier_too_even_to_put_something_down():
@@ -296,8 +500,7 @@ def test_a_command_waits_for_the_carrier_too_even_to_put_something_down():
         placed={"crate": aboard("ship", "crate")},
         **TIMED,
     )
-    for rule, agent in (("req_ctr", "a"), ("req_ctr", "b"), ("command", "a")):
-        c = next(t.target for t in successors(c) if (t.label.rule, t.label.agent) == (rule, agent))
+    c = taken(c, *ASKED_AND_SENT)
     assert enabled(c) == ["commit"]
     assert obstacle(c, c.eta.of("b")[0].request) is None
 
@@ -361,6 +564,22 @@ def test_commit_requires_its_unmoved_part_to_hold_in_belief_and_in_fact():
     )  # the moved node's own parent may change
 
 
+def test_commit_requires_what_has_no_site_to_be_empty_still_in_belief_and_in_fact():
+    x = PlaceVariable("x")
+    alone = Reaction(
+        "alone",
+        Pattern(("u0", "area"), (("u0", x),), closed=("area",)),
+        Pattern(("u0", "area"), (("u0", "area"),), closed=("area",)),
+    )
+    c = mission(["base", "area", "u0", "u1"], agents={"a": ("u0", ())}, **TIMED)
+    c = run(c.with_({("line", "a"): (CTR("a", alone),)}), "command")
+    fly = c.eta.all()[0].request
+    assert enabled(c) == ["commit"]
+    assert obstacle(c.with_({("parent", "u1"): "area"}), fly) is Obstacle.UNMATCHED
+    entered = c.with_({("placement", "u1"): Placed(point(36.65, -8.65))})
+    assert obstacle(entered, fly) is Obstacle.INCONSISTENT
+
+
 def test_commit_requires_every_node_to_be_outside_of_what_is_passive():
     c = run(commanding(move_to("area"), entities=("base", "area", "bunker", "u0")), "command")
     inside = c.with_({("parent", "area"): "bunker"})
@@ -395,10 +614,49 @@ def test_a_lost_target_is_inconsistent():
     assert obstacle(c, c.eta.all()[0].request) is Obstacle.INCONSISTENT
 
 
-def test_link_changes_commit_at_once():
-    c = commanding(by("CONNECT_HOST_TO", "u1"), entities=("base", "u0", "u1"), channels={"u1": ["w"]})
+@pytest.mark.parametrize(
+    ("request_of", "host", "links"),
+    [
+        (by("CONNECT_HOST_TO", "u1"), "u0", ("control:0", "w")),
+        (by("DISCONNECT_HOST_FROM", "u1"), "ship", ()),
+        (by("HAND", "u0", "gcs1"), "gcs0", ("control:1",)),
+    ],
+    ids=["connected", "disconnected", "handed over"],
+)
+def test_link_changes_commit_at_once_in_belief_and_in_fact(request_of, host, links):
+    channels = {"u0": ["control:0"], "u1": ["w"], "ship": ["w"], "gcs0": ["control:0"], "gcs1": ["control:1"]}
+    entities = ("base", "u0", "u1", "ship", "gcs0", "gcs1")
+    c = commanding(request_of, entities=entities, host=host, channels=channels)
     assert enabled(c) == ["actuate"]
-    assert run(c, "actuate").structure.physical.links("u0") == ("w",)
+    after = run(c, "actuate").structure
+    changed = "u0" if host == "gcs0" else host
+    assert (after.logical.links(changed), after.physical.links(changed)) == (links, links)
+
+
+def test_one_way_to_make_a_control_true_hides_no_other():
+    """To the area and the spill it flies; in the sea it is put down, and aboard it is already."""
+    anywhere = NodeVariable("p")
+    leave = Reaction(
+        "leave", Pattern(("u0", anywhere), (("u0", "ship"),)), Pattern(("u0", anywhere), (("u0", anywhere),))
+    )
+    c = mission(
+        ["sea", "area", "ship", "spill", "u0"],
+        agents={"a": ("u0", ())},
+        placed={"u0": aboard("ship", "u0")},
+        **TIMED,
+    )
+    c = c.with_({("line", "a"): (CTR("a", leave),)})
+    assert enabled(c) == ["actuate", "actuate", "command", "command"]
+
+
+def test_in_no_order_a_flight_ends_though_another_control_waits():
+    c = commanding(
+        move_to("area"),
+        move_to("base"),
+        entities=("sea", "area", "base", "u0"),
+        scheduler=Scheduler.UNORDERED,
+    )
+    assert enabled(run(c, "req_ctr", "command")) == ["commit"]
 
 
 def test_a_command_from_a_carrier_keeps_the_shape_of_what_is_carried():
@@ -526,3 +784,11 @@ def test_each_premise_is_the_first_to_fail_somewhere():
         failing = [next(p for p in PREMISES[of] if not p.holds(c, request, match)) for match in ways]
         assert {each.holds.__name__ for each in failing} == {name}
         assert obstacle(c, request) is failing[0].otherwise
+
+
+@pytest.mark.parametrize("premise", ["involves_host", "leaves_forest", "is_consistent"])
+def test_a_match_is_applicable_that_fulfils_each_premise_about_l(premise):
+    c = first_failing()[CTR, premise]
+    (pending,) = c.eta.all()
+    found = list(applicable(c, pending.request.agent, pending.request.reaction))
+    assert bool(found) is (premise == "is_consistent")

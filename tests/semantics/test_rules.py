@@ -44,7 +44,7 @@ from semantics.state.initial import Beliefs
 from semantics.state.physical_model import Placed
 from semantics.state.relations import Parent
 from semantics.state.requests import CTR, FLY, OBS, READY
-from semantics.state.setting import Control
+from semantics.state.setting import Control, Scheduler
 from semantics.state.signature import REGION
 from semantics.successors import successors
 
@@ -189,6 +189,16 @@ def test_rcv_obs_takes_the_first_case_that_fits():
     c = ready(cases, move_to("area"), GUARD, move_to("base"), code=(0, 1))
     (t,) = rcv_obs(c, "a")
     assert t.target.alpha.code("a") == (3, 4)
+
+
+@pytest.mark.parametrize("place", ["area", "base"])
+def test_in_no_order_an_observation_that_no_case_takes_hides_no_other(place):
+    looks = [Observe(of_name("CHILDREN", each)) for each in ("area", "base")]
+    c = alone(*looks, received("o", guard=is_in(place, "o")), scheduler=Scheduler.UNORDERED)
+    c = run(c, "req_obs", "req_obs", "sense", "sense")
+    (t,) = rcv_obs(c, "a")
+    (left,) = requests(t.target)
+    assert place not in left.observation.shown
 
 
 def test_the_body_of_a_guarded_case_begins_with_one_fun():

@@ -76,16 +76,40 @@ BigActor b hosted_at gcs0 with_behavior {
 }
 control timed
 """
+BOARDS = """
+BigActor a hosted_at vessel0 with_behavior { control(MOVE_HOST_TO vessel1) }
+BigActor b hosted_at vessel1 with_behavior { control(MOVE_HOST_TO gate0) }
+"""
+BOARDED = WORLD.replace("carries Drifter", "carries Vessel, Drifter").replace(
+    "  gate0:", "  vessel1: Vessel = point (36.974, -8.69)\n  gate0:"
+)
+MISSED = """
+BigActor a hosted_at uav0 with_behavior { observe(LINKED_TO(uav0)) react { case o => skip } }
+BigActor b hosted_at vessel0 with_behavior { control(PUT drifter0 IN south0) }
+environment { observe may miss vessel0 }
+"""
 OF_B = [Waiting("b"), HostedAt("b", "uav0"), HasPending("b"), Ended("b"), Known("uav0")]
 
 
 @pytest.mark.parametrize(
-    ("text", "formulas"),
-    [(LOADED, ()), (MOVED_AND_HANDED, ()), (SPAWNED, OF_B)],
-    ids=["what is carried goes with its carrier", "links of what moves", "who is spawned"],
+    ("text", "formulas", "world"),
+    [
+        (LOADED, (), WORLD),
+        (MOVED_AND_HANDED, (), WORLD),
+        (BOARDS, (), BOARDED),
+        (MISSED, (), WORLD),
+        (SPAWNED, OF_B, WORLD),
+    ],
+    ids=[
+        "what is carried goes with its carrier",
+        "links of what moves",
+        "what may be in what it boards",
+        "what is missed with its carrier",
+        "who is spawned",
+    ],
 )
-def test_nothing_lies_outside_of(text, formulas):
-    assert outside_of(start(text), formulas, most=400, count=60) == set()
+def test_nothing_lies_outside_of(text, formulas, world):
+    assert outside_of(start(text, world), formulas, most=400, count=60) == set()
 
 
 BUSY = """

@@ -2,12 +2,13 @@
 
 from hypothesis import given
 from scale import examples
-from small_missions import around, explore, is_in, mission, move_to, of_name, received
+from small_missions import GUARD, around, explore, is_in, mission, move_to, of_name, received
 
 from semantics import hypothesis_strategies
 from semantics.behaviours.expressions import Apply, Fault, Literal, TupleOf, Variable
-from semantics.behaviours.patterns import Anything, Elements
+from semantics.behaviours.patterns import Anything, Elements, Exactly
 from semantics.behaviours.statements import (
+    After,
     Assign,
     Case,
     ChooseFrom,
@@ -20,6 +21,7 @@ from semantics.behaviours.statements import (
     React,
     Send,
 )
+from semantics.behaviours.values import Truth
 from semantics.control import applicable
 from semantics.races.monitor import CONTROLS, monitored, slots_used, stale_tests
 from semantics.state.requests import FLY
@@ -150,6 +152,43 @@ def test_a_message_carries_what_its_sender_saw():
     agents = {"a": ("u0", (0, 1)), "b": ("u0", (3,)), "c": ("u1", (6,))}
     start = mission(["base", "area", "u0", "u1"], statements, agents, monitored=True)
     assert stale(start) == {"b"}
+
+
+def reacting(*cases, after=None, then=()):
+    """Return a mission in which a tells b whether the area is free of u1, and c moves u1 there."""
+    never = React(())
+    statements = (
+        LOOK,
+        received("o", 2),
+        Send(NOT_U1, Literal("b")),
+        React(cases, after),
+        GUARD,
+        never,
+        move_to("area"),
+        move_to("area"),
+    )
+    agents = {"a": ("u0", (0, 1)), "b": ("u0", (3, *then)), "c": ("u1", (7,))}
+    return mission(["base", "area", "u0", "u1"], statements, agents, monitored=True)
+
+
+def test_a_case_that_looks_into_a_message_rests_on_what_it_was_computed_from():
+    free, other = Case(Exactly(Truth.TRUE), None, (6,)), Case(Anything("m", "message"), None, ())
+    assert stale(reacting(free, other)) == {"b"}
+    assert stale(reacting(Case(Anything("m", "message"), None, (6,)))) == set()
+
+
+def test_a_guard_on_a_message_decides_what_follows_only_where_the_wait_would_end_elsewhere():
+    free = Case(Anything("m", "message"), Variable("m"), (4,))
+    assert stale(reacting(free, after=After(1.0), then=(6,))) == set()
+    assert stale(reacting(free, after=After(1.0, (5,)), then=(6,))) == {"b"}
+    assert stale(reacting(free, then=(6,))) == {"b"}
+
+
+def test_what_is_done_when_a_wait_ends_rests_on_the_message_that_a_guard_refused():
+    full = Case(Anything("m", "message"), Apply("not", (Variable("m"),)), (4,))
+    assert stale(reacting(full, after=After(1.0, (6,)))) == {"b"}
+    word = Case(Exactly("stop"), None, ())
+    assert stale(reacting(word, after=After(1.0, (6,)))) == set()
 
 
 def told(*sender):
