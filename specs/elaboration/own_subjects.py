@@ -139,7 +139,7 @@ class _Judge:
             return _Subject("SELF", frozenset(), write(written.query), line) if at_home else None
         leaf = _leaf(query)
         kinds = None if leaf is None else self.kinds(asker, leaf)
-        return kinds and _Subject(_word(written.query), kinds, write(written.query), line)
+        return None if kinds is None else _Subject(_word(written.query), kinds, write(written.query), line)
 
     def kinds(self, asker: _Asker, leaf: Expression) -> frozenset[str] | None:
         """Return the kinds of the entities that the subject of a query may be, None if one may not be seen."""
@@ -200,19 +200,20 @@ class _Judge:
 def _leaf(query: QueryOf) -> Expression | None:
     """Return the expression of the node that a query always shows, if it is there; None if it need not show it."""
     match query:
-        case QueryOf(QueryOperator.LINKED_TO, QueryOf() as inner):
-            return _leaf(inner) or _around(inner)
-        case QueryOf(None | QueryOperator.LINKED_TO, leaf):
-            return leaf
-        case QueryOf(QueryOperator.CHILDREN, QueryOf(QueryOperator.PARENT, leaf)):
-            return None if isinstance(leaf, QueryOf) else leaf
+        case QueryOf(None, argument) | QueryOf(
+            QueryOperator.CHILDREN, QueryOf(QueryOperator.PARENT, argument)
+        ):
+            return None if isinstance(argument, QueryOf) else argument
+        case QueryOf(QueryOperator.LINKED_TO, argument):
+            return (_leaf(argument) or _around(argument)) if isinstance(argument, QueryOf) else argument
     return None
 
 
 def _around(query: QueryOf) -> Expression | None:
     """Return the node whose children a query shows: a query about its answer is about that node, too."""
-    around = query.operator == QueryOperator.CHILDREN and not isinstance(query.argument, QueryOf)
-    return query.argument if around else None
+    if query.operator != QueryOperator.CHILDREN or isinstance(query.argument, QueryOf):
+        return None
+    return query.argument
 
 
 def _word(query: s.Query) -> str:
