@@ -65,9 +65,8 @@ def test_spill_watch_is_shown_as_the_mission_says_it_goes(watched, rule, about, 
     if asked is not None:
         assert (card["request"]["text"], card["request"]["limit"]) == (asked, 1800.0)
         assert card["order"]["state"] == "accepted"
-    over = "it will get no more requests: every bigActor of the mission has ended"
-    is_over = about == "airfield0" and not asked
-    assert (card["level"], card["why"] == over) == (int(is_over), is_over)
+    is_over = about == "airfield0" and not asked  # the run ends with its mission
+    assert (card["level"], card["word"]) == (0, "ended" if is_over else "well")
 
 
 def test_the_authority_over_the_plane_is_handed_over(watched):
