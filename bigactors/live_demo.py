@@ -146,6 +146,8 @@ def _fly(options: Namespace, speed: float | None) -> tuple[Ending, bool]:
     terminal = Terminal(flight.resting, tuple(flight.plan.vehicles))
     with record(flight) as tape, flying_output():
         ending = run_simulated(_flying(flight, terminal, tape, folder), speed)
+        if tape is not None:
+            tape.reason = ending.reason
         terminal.ends()
         say(f"{ending.reason} after {counted(ending.state.number, 'step')}")
     return ending, terminal.broken
