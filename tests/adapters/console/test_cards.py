@@ -78,6 +78,15 @@ def test_before_the_start_a_vehicle_that_refuses_to_arm_is_watched(tape):
         assert so(tape.card()) == card
 
 
+def test_who_pressed_start_is_among_what_was_done_once(tape):
+    tape.turn(0, uav(WEST, 0))
+    for state, by in (("ready", ""), ("begun", "Ana"), ("begun", "Ana")):
+        tape.recorder.preflight({"state": state, "by": by, "items": []}, 1000.5)
+    assert [(each["what"], each["by"], each["state"]) for each in tape.actions()] == [
+        ("start", "Ana", "confirmed")
+    ]
+
+
 def test_a_vehicle_with_nothing_to_do_says_first_for_whom_its_own_bigactor_waits(tmp_path):
     text = FLIGHT.replace("BigActor a hosted_at uav0", "BigActor z hosted_at uav0")
     text = text.replace("FLY a", "FLY z").replace('send "there" to op', 'react { case "on" => skip }')
