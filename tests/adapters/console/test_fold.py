@@ -82,7 +82,7 @@ def test_at_the_end_of_spill_watch_all_is_known_and_its_track_is_whole(watched):
     assert {name: agent["state"] for name, agent in view["agents"].items()} == dict.fromkeys(
         ("pilot", "shore", "tower"), "has ended"
     )
-    assert view["clock"]["ended"] == "the run has ended"
+    assert view["clock"]["ended"] == "the mission has ended"
     assert view["clock"]["rate"] is None  # flown as fast as it can be computed
     assert len(view["steps"]) == 200
     assert view["mission"]["verified"] is True
