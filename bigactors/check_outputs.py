@@ -3,7 +3,7 @@
 import os
 from argparse import Namespace
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Final
 
@@ -16,8 +16,10 @@ from bigactors.mission_lookup import locate
 from bigactors.mistakes import Mistake
 from bigactors.terminal import say_text
 from checker import Report
+from checker.properties.coverage import Coverage
 from checker.reports.results import CheckResult, Issue, Level
 from specs import parse_bytes
+from specs.codes import Code
 from specs.elaboration import ElaboratedMission
 from specs.syntax import Check
 
@@ -131,13 +133,15 @@ def result_of(checked: Checked | FailedMission) -> CheckResult:
 
 def result_on(mission: ElaboratedMission, name: str, report: Report) -> CheckResult:
     """Return the report on a mission together with line numbers in its text."""
+    cautions = cautions_of(mission, report)
+    covered = None if report.coverage is None else unexplained(report.coverage, cautions)
     return CheckResult(
         name,
         file_of(name),
-        report,
+        replace(report, coverage=covered),
         check_line=check_line(mission),
         text=mission.source.text,
-        cautions=cautions_of(mission, report),
+        cautions=cautions,
     )
 
 
@@ -161,6 +165,26 @@ def cautions_of(mission: ElaboratedMission, report: Report) -> tuple[Issue, ...]
     """Return the warnings on a mission's text that its report does not refute."""
     said = (diagnostic_json(each, mission.source) for each in mission.warnings_after(report.suspected))
     return tuple(_of_text(each, Level.WARNING) for each in said)
+
+
+CAUSES_OF_GAPS: Final = frozenset(
+    code.number
+    for code in (
+        Code.NOTHING_QUANTIFIED,
+        Code.TWO_TYPES,
+        Code.ALWAYS_THE_SAME,
+        Code.NEVER_INSIDE,
+        Code.HIDES_AN_ENTITY,
+        Code.SHOWS_ITSELF,
+    )
+)
+"""The codes of warnings that are the cause of a gap of coverage in the same line."""
+
+
+def unexplained(covered: Coverage, cautions: Iterable[Issue]) -> Coverage:
+    """Return coverage without the gaps that a warning on the text explains: one cause gives one warning."""
+    told = {caution.line for caution in cautions if caution.rule in CAUSES_OF_GAPS}
+    return replace(covered, gaps=tuple(gap for gap in covered.gaps if gap.line not in told))
 
 
 def _failures(failed: FailedMission) -> Iterable[Issue]:

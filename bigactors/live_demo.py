@@ -33,6 +33,7 @@ from bigactors.arguments import parse_arguments
 from bigactors.cli import main as command
 from bigactors.cli import reported
 from bigactors.commands.run.flight import Flight, fly, prepare, record
+from bigactors.ending_signals import as_process
 from bigactors.exits import Exit
 from bigactors.flight_watchers import Terminal
 from bigactors.mistakes import Mistake, unreadable
@@ -86,7 +87,7 @@ def arguments() -> ArgumentParser:
 def main() -> int:
     """Fly the demonstration into a folder; return the exit code."""
     asked = arguments().parse_args()
-    return reported(lambda: demonstrate(asked.folder, asked.speed, console=asked.console))
+    return as_process(lambda: reported(lambda: demonstrate(asked.folder, asked.speed, console=asked.console)))
 
 
 def demonstrate(folder: Path, speed: float | None = None, *, console: bool = False) -> int:
@@ -145,6 +146,8 @@ def _fly(options: Namespace, speed: float | None) -> tuple[Ending, bool]:
     terminal = Terminal(flight.resting, tuple(flight.plan.vehicles))
     with record(flight) as tape, flying_output():
         ending = run_simulated(_flying(flight, terminal, tape, folder), speed)
+        if tape is not None:
+            tape.reason = ending.reason
         terminal.ends()
         say(f"{ending.reason} after {counted(ending.state.number, 'step')}")
     return ending, terminal.broken

@@ -13,7 +13,8 @@ from bigactors.pages import MOST_PICTURES, Story, trace_page
 from bigactors.picture_files import draw_run
 from bigactors.pictures import RegionMarks, marks_of
 from checker import Trace, print_trace, to_json
-from checker.reports.causes import Cause, causes_of, formulas_of, headline_of
+from checker.reports.causes import Cause
+from checker.reports.trace_subject import TraceSubject
 from physical.wordings import counted
 from semantics.properties.kinds import PropertyKind
 from semantics.state.printing import print_configuration
@@ -25,28 +26,30 @@ class Evidence:
     """A trace, as evidence of a verdict.
 
     Attributes:
-        property: The name of the property.
+        subject: The property, and its violation.
         stem: The name of its folder.
-        about: A description of the evidence.
         trace: Its steps.
-        violated: Whether it ends in a violation.
         telling: Whether each configuration is drawn: the trace ends in a violation, or in a wanted configuration.
-        headline: The description in plain words.
         causes: The causes of the violation.
-        details: More lines of the description.
         marks: The regions that the property is about.
     """
 
-    property: str
+    subject: TraceSubject
     stem: str
-    about: str
     trace: Trace
-    violated: bool
     telling: bool
-    headline: str
     causes: tuple[Cause, ...] = ()
-    details: tuple[str, ...] = ()
     marks: RegionMarks | None = None
+
+    @property
+    def violated(self) -> bool:
+        """Whether the trace ends in a violation."""
+        return self.subject.violation is not None
+
+    @property
+    def property(self) -> str:
+        """The name of the property."""
+        return self.subject.asked.name
 
 
 def evidence_of(checked: Checked) -> Iterator[Evidence]:
@@ -54,19 +57,14 @@ def evidence_of(checked: Checked) -> Iterator[Evidence]:
     initial = checked.mission.initial
     for verdict in checked.report.verdicts:
         name = verdict.property.name
-        formulas = formulas_of(verdict.property)
         for violation in verdict.violations:
-            about = f"{name} violated: {violation.kind}: {violation.message}"
+            subject = TraceSubject(verdict.property, violation)
             yield Evidence(
-                name,
+                subject,
                 file_stem(f"{name}-{violation.kind}"),
-                about,
                 violation.trace,
-                True,
                 telling=True,
-                headline=headline_of(verdict.property, violation.kind),
-                causes=causes_of(violation.trace, violation, formulas),
-                details=violation.told,
+                causes=subject.causes(violation.trace),
                 marks=marks_of(
                     initial, violation.trace.configurations[-1], [verdict.property], violated=True
                 ),
@@ -76,9 +74,7 @@ def evidence_of(checked: Checked) -> Iterator[Evidence]:
             stem = file_stem(f"{name}-witness")
             last = verdict.witness.configurations[-1]
             marks = marks_of(initial, last, [verdict.property], violated=False)
-            about = f"{name}: a witness"
-            headline = f"{name}: a run to a case that it is about"
-            yield Evidence(name, stem, about, verdict.witness, False, found, headline, marks=marks)
+            yield Evidence(TraceSubject(verdict.property), stem, verdict.witness, found, marks=marks)
 
 
 def write_evidence(
@@ -93,7 +89,8 @@ def write_evidence(
     for each in evidence_of(checked):
         target = make_folder(str(_free(folder / each.stem, written)))
         write_text(str(target / "trace.txt"), "\n".join(_lines(checked, each)) + "\n")
-        write_json(str(target / "trace.json"), trace_json(each.trace, checked.name, checked.mission, sources))
+        data = trace_json(each.trace, checked.name, checked.mission, sources) | each.subject.json()
+        write_json(str(target / "trace.json"), data)
         title = f"{checked.mission.name}, {each.stem}:"
         draw_run(each.trace, target, title, each_step=each.telling, marks=each.marks)
         write_text(str(target / "trace.html"), trace_page(story_of(checked, each)))
@@ -114,13 +111,13 @@ def story_of(checked: Checked, evidence: Evidence) -> Story:
     """Return the contents of a trace's page."""
     return Story(
         checked.mission.name,
-        evidence.headline,
+        evidence.subject.headline,
         evidence.violated,
         evidence.trace,
         len(evidence.trace) if evidence.violated else 0,
         evidence.causes,
         drawn=MOST_PICTURES if evidence.telling else 1,
-        notes=(evidence.about, *evidence.details, f"{checked.name}, {checked.digest}"),
+        notes=(evidence.subject.about, *evidence.subject.details, f"{checked.name}, {checked.digest}"),
         marks=evidence.marks,
         properties=checked.mission.properties,
     )
@@ -137,7 +134,7 @@ def _free(path: Path, taken: list[Path]) -> Path:
 def _lines(checked: Checked, evidence: Evidence) -> Iterator[str]:
     trace = evidence.trace
     yield f"{checked.name} ({checked.digest})"
-    yield f"{evidence.about}; {counted(len(trace), 'step')}"
+    yield f"{evidence.subject.about}; {counted(len(trace), 'step')}"
     yield ""
     yield f"c0 = {print_configuration(trace.initial)}"
     yield from print_trace(trace)

@@ -60,6 +60,8 @@ _SHORT: Final = 5
 """The length up to which a word resembles others by chance."""
 
 _ONLY_FIRST: Final = frozenset({"always", "eventually", "race", "races", "deadlock", "deadlocks"})
+_DECIMAL: Final = re.compile(r"[(,]\s*-?(\d+(?:\.\d+)?)\s*\Z")
+_TITLE: Final = re.compile(r"[^\n:\"{}]*\w(?=\s*:)")
 _QUANTIFIERS: Final = frozenset({"forall", "exists"})
 _NAMES_AFTER: Final = re.compile(r"\b(\w+)\s+((?:\w+\s*,\s*)*\w+)\s*\Z")
 _MOST_NAMES: Final = 200
@@ -108,6 +110,14 @@ def bad_angle(at: ParsePoint) -> Diagnostic | None:
     if behind and at.found.is_number:
         hint = f"separate latitude and longitude; degrees and minutes have their marks: {ANGLES}"
         return at.mistake(Code.MISSING_COMMA, f"expected ',' before {at.found.shown}", hint)
+    if (
+        behind
+        and at.found.text in tuple("NSEW")
+        and (number := _DECIMAL.search(at.prepared.text, 0, at.found.span.start))
+    ):
+        sign = "-" if at.found.text in "SW" else ""
+        hint = f"write {sign}{number[1]}: south and west are negative"
+        return at.mistake(Code.BAD_COORDINATE, f"a decimal number has no letter {at.found.shown}", hint)
     if behind and at.found.text in tuple(":NSEW"):
         message = (
             f"{at.found.shown} is not part of a number; degrees and minutes are written with their marks"
@@ -303,7 +313,8 @@ def spare_separator(at: ParsePoint) -> Diagnostic | None:
 def missing_quotes(at: ParsePoint) -> Diagnostic | None:
     """`invariant never: ...`."""
     if at.sorts == {"STRING"} and (at.found.is_name or at.found.is_number):
-        hint = f'write it in double quotes: "{at.found.text}"'
+        title = _TITLE.match(at.prepared.text, at.found.span.start)
+        hint = f'write it in double quotes: "{at.found.text if title is None else title[0]}"'
         return at.mistake(Code.UNEXPECTED, f"expected a string, found {at.found.shown}", hint)
     return None
 
@@ -423,6 +434,8 @@ def reserved_word(at: ParsePoint) -> Diagnostic | None:
         meant = f"write linked {at.following.text}"
     if at.found.text == "if" and "forall" in at.accepted:
         meant = "an implication is written F -> G"
+    if at.found.text == "control" and at.before.text == "linked" and at.following.is_name:
+        meant = f"a control authority is written control:{at.following.text}"
     if at.found.text == "timing" and at.before.text == "control":
         meant = "write control timed"
     if meant:

@@ -168,6 +168,16 @@ def unnamed_property(at: ParsePoint) -> Diagnostic | None:
     return at.mistake(Code.UNEXPECTED, "expected the property's name before ':'", hint)
 
 
+def limit_of_nobody(at: ParsePoint) -> Diagnostic | None:
+    """`CTR within 5 min: return`, where `within` is taken for a bigActor."""
+    if at.before.text != "within" or not at.found.is_number or "within" not in at.accepted:
+        return None
+    hint = (
+        f"write anyone within {_duration_at(at, at.found)}, or name the bigActor whose requests are limited"
+    )
+    return Diagnostic(Code.UNEXPECTED, at.before.span, "expected a bigActor before 'within'", hint)
+
+
 def timeout_as_case(at: ParsePoint) -> Diagnostic | None:
     """`case after 10 min => ...`."""
     if at.found.text == "after" and at.before.text == "case":
@@ -207,6 +217,7 @@ TIMING_MISTAKES: Final[tuple[Callable[[ParsePoint], Diagnostic | None], ...]] = 
     exact_time,
     bad_duration,
     unnamed_property,
+    limit_of_nobody,
     timeout_as_case,
     timed_change,
 )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from functools import lru_cache
 from math import floor
 from operator import attrgetter
 from typing import Final, NamedTuple
@@ -23,11 +24,15 @@ from adapters.console.flights import concerned
 from adapters.console.parsing import text
 from adapters.console.return_preview import of_return
 from adapters.console.whereabouts import UNKNOWN, Whereabouts, destination, known_whereabouts
+from adapters.live.command_planning import unshown
 from adapters.live.due_times import HeadRequest
 from semantics.behaviours.durations import duration_text
+from semantics.control import obstacle, realisations
 from semantics.live_policy import Fallback, TimeLimit
+from semantics.state.configuration import Configuration
 from semantics.state.requests import CTR, FLY, Request
-from semantics.state.signature import Name
+from semantics.state.signature import REGION, Name
+from semantics.state.station_partition import is_here
 
 WELL, WATCHED, WRONG, LOST = range(4)
 """The levels: how urgently a vehicle needs an operator."""
@@ -37,6 +42,9 @@ WORDS: Final = ("well", "watch", "wrong", "lost")
 
 UNKNOWN_NOW: Final = "unknown"
 """The word for a vehicle without any current information."""
+
+ENDED: Final = "ended"
+"""The word for a vehicle without a reason when the run has ended: its last known state is no present one."""
 
 OLD: Final = 5.0
 """Seconds of silence after which a vehicle is to be watched."""
@@ -90,7 +98,7 @@ def _card(facts: Facts, name: Name, asked: Asked | None, where: Whereabouts, sai
     seen, status = facts.seen.get(name), facts.status.get(name, {})
     order, link = _order(facts, name), facts.links.get(name, Link())
     reasons = sorted(said, key=lambda reason: -reason.level)
-    worst = reasons[0] if reasons else Reason(WELL, "")
+    worst = reasons[0] if reasons else Reason(WELL, "", "" if facts.ended is None else ENDED)
     heading, authority = status.get("heading"), facts.authority.get(name, UNTOLD)
     return {
         "kind": _kind(facts, name),
@@ -101,7 +109,7 @@ def _card(facts: Facts, name: Name, asked: Asked | None, where: Whereabouts, sai
         "request": None if asked is None else _request_json(asked),
         "flight": facts.flights.get(name),
         "order": None if order is None else _order_json(order, _way(facts, name)),
-        "link": {"heard": None if link.heard is None else floor(link.heard), "lost": link.lost},
+        "link": _link_json(link, over=facts.ended is not None),
         "mode": status.get("mode"),
         "armed": status.get("armed"),
         "battery": status.get("battery"),
@@ -120,6 +128,11 @@ def _card(facts: Facts, name: Name, asked: Asked | None, where: Whereabouts, sai
         "word": worst.word or WORDS[worst.level],
         "why": "; ".join(each.why for each in reasons),
     }
+
+
+def _link_json(link: Link, *, over: bool) -> Json:
+    heard = None if link.heard is None else floor(link.heard)
+    return {"heard": heard, "lost": link.lost} | ({"over": True} if over else {})
 
 
 def _altitude(seen: SeenEntity | None, status: Mapping[str, Json]) -> int | None:
@@ -237,7 +250,8 @@ def _reasons(
     facts: Facts, name: Name, now: float, asked: Asked | None, where: Whereabouts
 ) -> Iterator[Reason]:
     """Yield the reasons why a vehicle needs an operator."""
-    yield from _of_link(facts.links.get(name, Link()), now)
+    runs = facts.ended is None
+    yield from _of_link(facts.links.get(name, Link()), now, runs=runs)
     if name in facts.taken:
         yield Reason(LOST, f"taken over: {facts.taken[name]}", "taken over")
     elif name in facts.standing_orders:
@@ -251,13 +265,14 @@ def _reasons(
         elif known.get("begun") is False:
             yield Reason(WRONG, f"its station {station} has not started: nobody commands it")
     away = name in facts.taken or name in facts.standing_orders
-    yield from _of_request(asked, now, idle=away)
-    yield from _of_blocking(facts, asked)
+    if runs:
+        yield from _of_request(asked, now, idle=away)
+    yield from _of_blocking(facts, name, asked, where)
     yield from _of_falling_back(facts, asked)
     yield from _of_preflight(facts, name)
-    if not away:
+    if runs and not away:
         yield from _of_setting_out(facts, name, now)
-    if asked is None and not away and facts.status.get(name, {}).get("armed"):
+    if runs and asked is None and not away and facts.status.get(name, {}).get("armed"):
         yield from _of_idleness(facts, name)
     for order in (facts.orders.get(name), facts.hand_overs.get(name)):
         told = order is not None and (_is_standing(facts, name, order) or order.why == facts.taken.get(name))
@@ -270,12 +285,12 @@ def _reasons(
         yield Reason(WATCHED, "its believed and its actual position differ")
 
 
-def _of_link(link: Link, now: float) -> Iterator[Reason]:
+def _of_link(link: Link, now: float, *, runs: bool) -> Iterator[Reason]:
     if link.lost:
-        yield Reason(LOST, "the link is lost")
+        yield Reason(LOST, "the link is lost" if runs else "the link was lost")
     elif link.heard is None:
-        yield Reason(WATCHED, "nothing was heard of it yet", UNKNOWN_NOW)
-    elif now - link.heard > OLD:
+        yield Reason(WATCHED, f"nothing was heard of it{' yet' if runs else ''}", UNKNOWN_NOW)
+    elif runs and now - link.heard > OLD:
         yield Reason(WATCHED, f"nothing was heard of it for more than {OLD:g} s")
 
 
@@ -310,15 +325,31 @@ def _of_request(asked: Asked | None, now: float, *, idle: bool) -> Iterator[Reas
         yield Reason(WATCHED, f"the time limit of its request, {duration_text(limit)}, still runs{then}")
 
 
-def _of_blocking(facts: Facts, asked: Asked | None) -> Iterator[Reason]:
-    """Yield that the request cannot be served, as the run has found."""
-    if asked is None:
+def _of_blocking(facts: Facts, name: Name, asked: Asked | None, where: Whereabouts) -> Iterator[Reason]:
+    """Yield that the request cannot be served as L and P are now, whatever the run has found before."""
+    if asked is None or asked.given_up or facts.standing is None or facts.run is None:
         return
-    request = text(str(asked.waiting.request))
-    for alert in facts.alerts.values():
-        if alert["kind"] == "blocked" and alert["message"].startswith(request):
-            yield Reason(WRONG, f"its request{alert['message'].removeprefix(request)}")
-            return
+    c, request = facts.standing.configuration, asked.waiting.request
+    if isinstance(request, CTR) and is_here(c, request.agent):
+        why = _hindrance(c, request, frozenset(facts.run.vehicles))
+        if why:
+            astray = f": {name} is believed in {_place(where.believed)} and is in {_place(where.actual)}"
+            yield Reason(WRONG, f"its request {why}{astray if where.differs else ''}; it stays pending")
+
+
+@lru_cache(maxsize=1 << 10)
+def _hindrance(c: Configuration, request: CTR, vehicles: frozenset[Name]) -> str:
+    """Return why a control cannot be served in a configuration, empty if it can, or only waits."""
+    reason = obstacle(c, request)
+    if reason is not None:
+        return f"is {reason.value}"
+    way = next((each for each in realisations(c, request) if not (each.flying and each.waits(c))), None)
+    unseen = "" if way is None else unshown(c, request, way, vehicles)
+    return unseen and f"is blocked: {unseen}"
+
+
+def _place(name: Name | None) -> str:
+    return "none of the places" if name in (None, REGION) else str(name)
 
 
 def _of_preflight(facts: Facts, name: Name) -> Iterator[Reason]:

@@ -13,7 +13,7 @@ from adapters.console.entity_tracks import take_arrival
 from adapters.console.facts import Change, Facts, Opening, Run, Standing, Unreplayable
 from adapters.console.fates import take_giving_back, take_order
 from adapters.console.flights import arrive, take_command, take_flight, take_report, take_status, take_words
-from adapters.console.operator_actions import take_acknowledgement, take_note, take_saying
+from adapters.console.operator_actions import act, take_acknowledgement, take_note, take_saying
 from adapters.console.parsing import count, number, ring, text, texts
 from adapters.console.station_list import take_presence
 from adapters.console.watched_ways import take_invariant, take_way
@@ -195,10 +195,12 @@ def _limit(data: Any) -> TimeLimit | None:
 STATES: Final = ("waits", "ready", "begun")
 
 
-def take_preflight(draft: Facts, _time: float, data: Any) -> None:
-    """Take in the checklist, and whether the run waits, is ready to start, or has begun."""
+def take_preflight(draft: Facts, time: float, data: Any) -> None:
+    """Take in the checklist, and whether the run waits, is ready to start, or was started by an operator."""
     match data:
         case {"state": str(state), "items": list(items)} if state in STATES:
+            if state == "begun" != draft.preflight.get("state") and text(data.get("by")):
+                act(draft, time, {"by": data["by"]}, "start", "")
             draft.preflight["state"] = state
             draft.preflight["by"] = text(data.get("by"))
             draft.preflight["items"] = [_item(each) for each in items[:MOST] if isinstance(each, dict)]

@@ -89,6 +89,14 @@ def seconds(text: str) -> float:
     return value
 
 
+def multiple(text: str) -> float:
+    """Return a factor above 0."""
+    value = _number(text)
+    if value is None or value <= 0:
+        raise argparse.ArgumentTypeError(f"'{text:.40}' is not a number above 0")
+    return value
+
+
 def times(text: str) -> float:
     """Return a factor from 0.1 to 1000."""
     value = _number(text)
@@ -394,7 +402,7 @@ VALUES: Final[dict[str, Callable[[str], object]]] = {
     "TIMES": times,
     "VEHICLE=FILE": route,
     "VEHICLE=SOURCE[,SETTING=VALUE...][,level]": camera,
-    "X": seconds,
+    "X": multiple,
     "[HOST:]PORT": place,
     "ros=ADDRESS": published,
 }

@@ -20,6 +20,7 @@ from typing import Any, Final
 from bigactors.cli import main as command
 from bigactors.cli import reported
 from bigactors.commands.run.station_flight import driven
+from bigactors.ending_signals import as_process
 from bigactors.exits import Exit
 from bigactors.mission_lookup import open_mission
 from bigactors.mistakes import Mistake
@@ -34,7 +35,7 @@ def main() -> int:
     """Fly a mission's file with recording, verdict and socket in a folder; return the exit code."""
     file, folder = sys.argv[1:]
     Thread(target=_end_with_input, daemon=True).start()
-    return reported(lambda: _flown(file, Path(folder)))
+    return as_process(lambda: reported(lambda: _flown(file, Path(folder))))
 
 
 def _end_with_input() -> None:

@@ -85,6 +85,9 @@ def _unrealised(c: Configuration, request: CTR | FLY) -> Iterator[str]:
                 yield f"{node if node not in physical else place} is gone"
             elif place == REGION:
                 yield f"{node} would be in no place: a vehicle needs a place to go to"
+            elif not setting.signature[setting.kind(place)].may_contain(setting.kind(node)):
+                inside, holder = setting.kind(node), setting.kind(place)
+                yield f"no {holder} may contain a {inside}: the signature lacks 'kind {holder} contains {inside}'"
             elif not setting.signature[setting.kind(node)].driven:
                 by = physical.carrier(node)
                 yield f"nothing drives {node}" + (

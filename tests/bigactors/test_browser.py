@@ -96,12 +96,36 @@ def test_lettering_is_large_enough_boxes_stay_in_their_lanes_and_dark_pictures_a
         page.set_viewport_size(size)
         page.reload()
         page.wait_for_selector(".stage .frame text")
-        assert min(page.evaluate(SIZES)) >= 10.9
+        assert min(page.evaluate(SIZES)) >= 7.9
         assert page.evaluate(SPILLED) == 0
         assert overflow(page) == 0
         for place in range(2):
             picture = Image.open(BytesIO(page.locator(".stage .frame").nth(place).screenshot())).convert("L")
             assert (ImageStat.Stat(picture).mean[0] < 80) == (scheme == "dark")
+
+
+SEEN = """() => [...document.querySelectorAll('.stage .frame')].map((frame) => {
+  const outer = frame.getBoundingClientRect();
+  return [...frame.querySelectorAll('text')].every((text) => {
+    const { left, right, top, bottom } = text.getBoundingClientRect();
+    return left >= outer.left - 1 && right <= outer.right + 1 && top >= outer.top - 1 && bottom <= outer.bottom + 1;
+  });
+})"""
+"""Whether all texts of the map, and of the bigraph, are within their frames."""
+
+
+def test_pictures_are_whole_on_a_tablet_and_a_phone_says_where_only_a_part_is_shown(opened):
+    page = opened(violation("look_before_entry_racy", "race_freedom"))
+    for size, wholes in ((DESK, [True, True]), (TABLET, [True, True]), (PHONE, [False, True])):
+        page.set_viewport_size(size)
+        page.reload()
+        page.wait_for_selector(".stage .frame text")
+        assert page.evaluate(SEEN) == wholes
+        assert page.locator(".stage .part").count() == wholes.count(False)
+    for _ in range(3):
+        page.locator(".stage button", has_text="−").first.click()
+    until(page, "document.querySelectorAll('.stage .part').length === 0")
+    assert page.evaluate(SEEN) == [True, True]
 
 
 def test_the_page_of_a_run_with_dates_has_gaps_where_time_passes(opened):

@@ -1,6 +1,7 @@
 """`check --output`: which document goes where, and what it says of the missions' lines."""
 
 import json
+import re
 import xml.etree.ElementTree as ET
 from pathlib import Path
 
@@ -162,3 +163,22 @@ def test_where_nothing_would_be_checked_there_is_no_pass(missions, bigactors, re
     assert not (missions / "v.json").exists()
     assert bigactors("run", "nothing.mission", "--unverified")[0] == 2
     assert bigactors("show", "nothing.mission")[0] == 0
+
+
+def test_a_warning_on_the_text_takes_the_place_of_the_gap_that_it_explains_in_every_format(
+    missions, bigactors
+):
+    mission = Path(__file__).parents[1] / "corpus" / "warned" / "LS712_shows_itself.mission"
+    code, out, _ = bigactors("check", str(mission), "--all", *IN_ALL_FORMATS)
+    assert code == 0
+    texts = written(missions)
+    for text in (out, texts["junit"], texts["github"]):
+        assert "LS712" in text
+        assert not re.search(r":21: warning: this condition|line=21,title=warning::this condition", text)
+    results = json.loads(texts["sarif"])["runs"][0]["results"]
+    line21 = [
+        each["ruleId"]
+        for each in results
+        if each["locations"][0]["physicalLocation"]["region"]["startLine"] == 21
+    ]
+    assert line21 == ["LS712"]

@@ -64,6 +64,9 @@ show holds.mission --lanes  # --lanes shows a trace
 show holds.mission --against x.json  # --against is for two traces
 show holds.mission --output tracks.geojson  # tracks are those of a trace
 show --trace run.json --step 2 --output tracks.geojson  # tracks are those of a whole trace
+replay run.json --speed 0  # argument --speed: '0' is not a number above 0
+console holds.mission
+    # holds.mission: this is no recording: it does not begin as MCAP\n  hint: give a recording that run --record wrote
 replay nowhere.json  # nowhere.json: No such file or directory
 replay run.json --waypoints uav0=x.txt  # a route is written as one of .plan, .waypoints
 replay run.json --waypoints uav9=x.plan  # the mission has no entity 'uav9'\n  hint: the only vehicle is uav0

@@ -233,6 +233,87 @@ def test_a_trace_becomes_a_page(bigactors, missions):
     assert page.count('"parts":') == 9
 
 
+@pytest.fixture
+def shown(bigactors, missions):
+    """Make the page of a trace that `check` wrote; returns the header of a page."""
+
+    def header(page):
+        return re.search("<header>.*?</header>", page.read_text(encoding="utf-8"))[0]
+
+    def show(folder):
+        assert bigactors("show", "--trace", str(folder / "trace.json"), "--output", "page.html")[0] == 0
+        return header(missions / "page.html"), header(folder / "trace.html")
+
+    return show
+
+
+@pytest.mark.parametrize("name", ["look_before_entry_racy", "broken_inconsistent", "oil_spill"])
+def test_the_page_of_a_trace_file_has_the_headline_of_the_page_that_check_wrote(
+    bigactors, missions, shown, name
+):
+    bigactors("check", name, "--trace", "traces")
+    for folder in (missions / "traces" / name).iterdir():
+        again, first = shown(folder)
+        assert again == first
+        assert "<p" in again
+
+
+@pytest.fixture
+def violating(bigactors, missions):
+    """The trace of a violation, and how to change it."""
+    bigactors("check", "broken_inconsistent", "--trace", "traces")
+    (path,) = (missions / "traces").glob("*/*-inconsistent/trace.json")
+
+    def change(**members):
+        data = json.loads(path.read_text(encoding="utf-8"))
+        path.write_text(json.dumps(data | members), encoding="utf-8")
+        return path
+
+    return change
+
+
+@pytest.mark.parametrize(
+    ("said", "message"),
+    [
+        ([], "'violation' should be an object"),
+        ({"property": "none", "kind": "k", "message": "m"}, "'property' should be the name of one of"),
+        ({"property": ["local_consistency"], "kind": "k", "message": "m"}, "'property' should be the name"),
+        ({"property": "local_consistency", "message": "m"}, "'kind' of a violation should be a text"),
+        (
+            {"property": "local_consistency", "kind": "k", "message": "m" * 2_001},
+            "of at most 2,000 characters",
+        ),
+        (
+            {"property": "local_consistency", "kind": "k", "message": "m", "details": ["d"] * 201},
+            "of at most 200",
+        ),
+        (
+            {"property": "local_consistency", "kind": "k", "message": "m", "details": [7]},
+            "'details' of a violation",
+        ),
+    ],
+)
+def test_a_malformed_violation_of_a_trace_is_refused(violating, refused, said, message):
+    assert message in refused("show", "--trace", str(violating(violation=said)))
+
+
+def test_a_witness_of_an_unknown_property_is_refused(violating, refused):
+    path = violating()
+    data = json.loads(path.read_text(encoding="utf-8"))
+    del data["violation"]
+    path.write_text(json.dumps(data | {"witness": 3}), encoding="utf-8")
+    assert "'witness' should be the name of one of the mission's properties" in refused("replay", str(path))
+
+
+def test_the_violation_of_a_trace_is_not_repeated_on_another_mission(bigactors, missions, violating):
+    mission = json.loads(violating().read_text(encoding="utf-8"))["text"]
+    (missions / "other.mission").write_text(f"// mended\n{mission}")
+    code, _, err = bigactors("show", "other.mission", "--trace", str(violating()), "--output", "page.html")
+    assert code == 0
+    assert "its violation is not shown: it was found there" in err
+    assert "is violated" not in (missions / "page.html").read_text(encoding="utf-8")
+
+
 @pytest.mark.usefixtures("run")
 def test_the_tracks_of_a_trace_are_written(bigactors, missions):
     code, out, err = bigactors("show", "--trace", "run.json", "--output", "tracks.geojson")

@@ -260,6 +260,22 @@ def test_a_remedy_is_what_was_meant_or_what_there_is(written, said):
     assert [f"{place} | {hint}" for place, _, hint in shown(PORT + ALONE + written)] == [said]
 
 
+@pytest.mark.parametrize(
+    ("written", "said"),
+    [
+        ("world { s: Vessel = point (37.15 N, 8.50 W) }", "N | write 37.15: south and west are negative"),
+        ("world { s: Vessel = point (37.15, 8.50 W) }", "W | write -8.50: south and west are negative"),
+        ("world { s: Vessel = point (37.1, -8.5) linked control gcs }",
+         "control | a control authority is written control:gcs"),
+        ("live { CTR within 5 min: return }",
+         "within | write anyone within 5 min, or name the bigActor whose requests are limited"),
+        ("check { invariant my rule: uav in sea }", 'my | write it in double quotes: "my rule"'),
+    ],
+)  # fmt: skip
+def test_a_remedy_has_the_words_that_were_meant(written, said):
+    assert [f"{place} | {hint}" for place, _, hint in shown(PORT + ALONE + written)] == [said]
+
+
 FROM_FILE = """signature standard world { from "port.geojson" }
 BigActor a hosted_at tug with_behavior { control(MOVE_HOST_TO dock) send "x" to b }
 environment { vhf drops }

@@ -41,7 +41,9 @@ function calm(vehicles, fallenBack) {
   return `${watched.length} to be watched: ${name}${card.why ? `, ${card.why}` : ""}${watched.length > 1 ? ", ..." : "."}`;
 }
 
-const endOf = (why, file) => `The run has ended: ${why}.${file ? ` It is recorded in ${file}.` : ""}`;
+/** The end of a run whose recording has no other reason. */
+const UNSAID = "the run has ended";
+const endOf = (why, file) => `The run has ended${why === UNSAID ? "" : `: ${why}`}.${file ? ` It is recorded in ${file}.` : ""}`;
 
 /** Milliseconds for which an alert that replaces another cannot be acknowledged: the press was meant for the old one. */
 const TO_READ = 1_000;

@@ -125,7 +125,7 @@ class App {
     const why =
       mode === "replay" ? "This is a recording that has ended: nothing can be done in it."
       : role !== "act" ? "This link lets you watch. To act, open the link that the program printed for it."
-      : this.link.state.value.state !== "open" ? "Not connected: nothing can be done from here now."
+      : this.link.state.value.state !== "open" && (this.clock.get("broken_off") || !this.clock.get("ended")) ? "Not connected: nothing can be done from here now."
       : this.clock.get("ended") ? "The run has ended: nothing can be done any more."
       : this.clock.get("live") === false ? PAST
       : "";

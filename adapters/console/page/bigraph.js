@@ -9,8 +9,8 @@ const ATTRIBUTES = new Set(["d", "x", "y", "x1", "x2", "y1", "y2", "dx", "dy", "
 /** A reference to something outside the picture. */
 const ELSEWHERE = /url\s*\((?!\s*['"]?#)/i;
 const LARGEST = 12;
-/** The least height in pixels of a picture's lettering. */
-const LEAST = 11;
+/** The least height in pixels of the lettering of a whole picture, and the height if only a part would be readable. */
+const [LEAST, READABLE] = [8, 11];
 
 /**
  * Convert a picture to elements of this page: shapes and text only. Script sets its styles, since the page's policy refuses
@@ -99,16 +99,21 @@ export function Drawing({ svg, text, called, caption, lettering = 0, chosen = nu
   const frame = useRef(null);
   const view = useRef({ box: null, whole: null });
   const [words, setWords] = useState(false);
+  const [isPart, setIsPart] = useState(false);
   const pressed = useRef(null);
 
-  const show = () => frame.current?.firstElementChild?.setAttribute("viewBox", view.current.box.join(" "));
+  const show = () => {
+    const { box, whole } = view.current;
+    frame.current?.firstElementChild?.setAttribute("viewBox", box.join(" "));
+    setIsPart([0, 1].some((side) => box[side] > whole[side] + 1 || box[side] + box[side + 2] < whole[side] + whole[side + 2] - 1));
+  };
   /** Show the whole picture, or its middle part if the lettering of the whole would be too small to read. */
   const fit = () => {
     if (!view.current.whole) return;
     const [x, y, width, height] = view.current.whole;
     const { clientWidth, clientHeight } = frame.current;
     const scale = Math.min(clientWidth / width, clientHeight / height) || 1;
-    const part = Math.min(1, lettering ? (scale * lettering) / LEAST : 1);
+    const part = scale * lettering < LEAST ? Math.min(1, (scale * lettering) / READABLE || 1) : 1;
     view.current.box = [x + (width * (1 - part)) / 2, y + (height * (1 - part)) / 2, width * part, height * part];
     show();
   };
@@ -186,7 +191,7 @@ export function Drawing({ svg, text, called, caption, lettering = 0, chosen = nu
       <button type="button" onClick=${() => zoom(0.8)} disabled=${words} aria-label="make smaller">−</button>
       <button type="button" onClick=${fit} disabled=${words}>Fit</button>
       <button type="button" aria-pressed=${String(words)} onClick=${() => setWords(!words)}>Text</button>
-      <span class="quiet">${caption(words)}</span></p>
+      <span class="quiet">${caption(words)}${isPart && !words && svg && html`<span class="part">, a part of it: drag it, or − for more</span>`}</span></p>
     ${words || !svg
       ? html`<pre tabindex="0" key="text">${text}</pre>`
       : html`<div key="picture" class="frame" ref=${frame} tabindex="0" role="img" aria-label=${`${called}: ${text ?? "see the picture"}`} onPointerMove=${drag} onKeyDown=${keys}

@@ -127,10 +127,10 @@ function status({ mode, armed, heading, link }) {
   return asHeard(link, parts);
 }
 
-/** A vehicle's reported facts, marked as old if its link is lost. */
-function asHeard({ lost }, parts) {
+/** A vehicle's reported facts, marked as old if its link is lost, or the run has ended. */
+function asHeard({ lost, over }, parts) {
   const told = parts.filter(Boolean).join(" · ");
-  return told && lost ? `when last heard: ${told}` : told;
+  return told && (lost || over) ? `when last heard: ${told}` : told;
 }
 
 /** A vehicle's speed, height and remaining distance; "" if none is known. */
@@ -172,7 +172,7 @@ function Place({ card }) {
 
 /** The age of a vehicle's last message, marked when it is old; its time of day once the run has stopped listening. */
 export function LinkAge({ app, link, unknown }) {
-  if (unknown && link.heard !== null) return html`<span class="link bad">last heard ${utc(link.heard)}</span>`;
+  if ((unknown || link.over) && link.heard !== null) return html`<span class=${`link ${unknown || link.lost ? "bad" : "quiet"}`}>last heard ${utc(link.heard)}</span>`;
   if (link.lost) return html`<span class="link bad">link lost${link.heard !== null && html` <${Age} clock=${app.clock} time=${link.heard} />`}</span>`;
   if (link.heard === null) return html`<span class="link quiet">not heard</span>`;
   const apply = (element, now) => {

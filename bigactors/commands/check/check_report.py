@@ -11,7 +11,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from bigactors.check_outputs import Output, cautions_of, outputs_of, write_outputs
+from bigactors.check_outputs import Output, cautions_of, outputs_of, unexplained, write_outputs
 from bigactors.checking import Checked, FailedMission, How, check_missions
 from bigactors.exits import Exit, worst
 from bigactors.files import check_writable, file_stem, make_folder, write_json
@@ -29,7 +29,6 @@ from checker.reports.results import Issue, caution_text
 from checker.verdicts import Outcome, Report
 from physical.wordings import counted
 from semantics.successors import rules_of
-from specs.codes import Code
 
 if TYPE_CHECKING:
     from bigactors.signatures import SigningKey
@@ -111,18 +110,6 @@ WORDS = {
 
 MOST_ALIKE, MOST_GAPS = 3, 5
 """The most warnings of one code, and the most gaps of coverage, on a screen."""
-
-CAUSES_OF_GAPS = frozenset(
-    code.number
-    for code in (
-        Code.NOTHING_QUANTIFIED,
-        Code.TWO_TYPES,
-        Code.ALWAYS_THE_SAME,
-        Code.NEVER_INSIDE,
-        Code.HIDES_AN_ENTITY,
-    )
-)
-"""The codes of warnings that are the cause of a gap of coverage in the same line."""
 
 
 def check_and_report(options: Namespace) -> Exit:
@@ -229,8 +216,7 @@ def _tally_lines(
     if not report.complete:
         yield f"  to decide more: {remedies(result.mission, report)}"
     if report.coverage is not None:
-        told = {caution.line for caution in cautions if caution.rule in CAUSES_OF_GAPS}
-        gaps = tuple(gap for gap in report.coverage.gaps if gap.line not in told)
+        gaps = unexplained(report.coverage, cautions).gaps
         shown = gaps if everything else gaps[:MOST_GAPS]
         yield from coverage_text(
             result.name, replace(report.coverage, gaps=shown), result.mission.source.text

@@ -148,7 +148,7 @@ def _look_into(options: Namespace) -> None:
         if first is not None:
             checked_run(first.data if first.topic == "run" and isinstance(first.data, dict) else None)
     except RecordingError as error:
-        raise Mistake(str(error), place=path) from error
+        raise Mistake(str(error), "give a recording that run --record wrote", path) from error
     except OSError as error:
         if not (options.follow and isinstance(error, FileNotFoundError)):
             raise unreadable(path, error) from error

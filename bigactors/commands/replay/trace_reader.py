@@ -1,6 +1,6 @@
 """Traces in files: of the checker, recordings of runs, and recordings by other programs."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Final
@@ -13,6 +13,7 @@ from bigactors.mistakes import Mistake
 from bigactors.recordings import mission_of, open_recording, trace_of
 from bigactors.terminal import tell
 from checker import Trace, replay
+from checker.reports.trace_subject import TraceSubject, subject_of
 from physical.nmea_lines import has_frame
 from semantics.races.monitor import monitored
 from semantics.state.setting import Control, Scheduler
@@ -26,13 +27,15 @@ AIS = (".nmea", ".ais")
 class Replayed:
     """A replayed trace, with its mission, and the recording that it was read from, if any.
 
-    `times` are the times of its steps in seconds; empty for an undated trace.
+    `times` are the times of its steps in seconds; empty for an undated trace. `subject` is the reason why it was
+    written, for a trace of this very mission that `check` wrote.
     """
 
     mission: ElaboratedMission
     trace: Trace
     recording: Recording | None = None
     times: tuple[float, ...] = ()
+    subject: TraceSubject | None = None
 
 
 def is_foreign(path: str) -> bool:
@@ -95,10 +98,12 @@ def read_trace(
     try:
         start = monitored(mission.initial) if data.get("monitored") is True else mission.initial
         trace = replay(start, data)
+        if not _is_of(data, mission):
+            _warn_of_another(path, data, mission, mission_file or str(named))
+            return Replayed(mission, trace)
+        return Replayed(mission, trace, subject=subject_of(data, trace, mission.properties))
     except ValueError as error:
         raise Mistake(str(error), place=path) from error
-    _warn_of_another(path, data, mission, mission_file or str(named))
-    return Replayed(mission, trace)
 
 
 def _mission_of(path: str, data: dict[str, Any], file: str | None, variation: Variation) -> ElaboratedMission:
@@ -124,7 +129,8 @@ def _read_recording(path: str, mission_file: str | None, variation: Variation) -
     recording = open_recording(path)
     mission = mission_of(recording) if mission_file is None else open_mission(mission_file, variation)
     trace = trace_of(recording, mission)
-    _warn_of_another(path, recording.run, mission, mission_file or str(recording.run["mission"]))
+    if not _is_of(recording.run, mission):
+        _warn_of_another(path, recording.run, mission, mission_file or str(recording.run["mission"]))
     times = tuple(message.time for message in recording.of("steps"))
     return Replayed(mission, trace, recording, times)
 
@@ -136,9 +142,13 @@ def _beside(trace: str, mission: str) -> str:
     return mission if known else str(beside)
 
 
-def _warn_of_another(path: str, data: Any, mission: ElaboratedMission, given: str) -> None:
-    if not isinstance(data, dict) or data.get("digest") == digest_of(mission):
-        return
+def _is_of(data: Mapping[str, Any], mission: ElaboratedMission) -> bool:
+    return data.get("digest") == digest_of(mission)
+
+
+def _warn_of_another(path: str, data: Mapping[str, Any], mission: ElaboratedMission, given: str) -> None:
     tell(f"{path}: warning: it was written of another mission, or by another version of bigactors")
     tell(f"  written of: {data.get('mission')!s:.200}, digest {data.get('digest')!s:.80}")
     tell(f"  replayed on: {given}, digest {digest_of(mission)}")
+    if "violation" in data:
+        tell("  its violation is not shown: it was found there")

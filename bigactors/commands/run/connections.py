@@ -251,7 +251,8 @@ def _check_all_driven(options: Namespace, mission: ElaboratedMission) -> None:
     if missing and own_station(options) is None:
         hint = (
             f"give its address: --vehicle {missing[0]}=udp:127.0.0.1:14550, or for a rehearsal "
-            f"{missing[0]}=simulated:plane; traffic that nobody here commands is of a kind that is not driven"
+            f"{missing[0]}=simulated:plane; traffic that nobody here commands is of a kind that is not driven, "
+            "such as Tanker of the standard signature"
         )
         raise Mistake(f"vehicles of the mission have no address: {', '.join(missing)}", hint)
 

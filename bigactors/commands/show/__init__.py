@@ -12,8 +12,9 @@ from bigactors.mistakes import Mistake
 from bigactors.terminal import say, tell
 
 if TYPE_CHECKING:
+    from bigactors.commands.replay.trace_reader import Replayed
+    from bigactors.pages import Story
     from checker import Trace
-    from semantics import Property
 
 DESCRIPTION: Final = """\
 Print the initial configuration of a mission, or any configuration of a trace, and draw its bigraph beside the map.
@@ -67,15 +68,15 @@ def run(options: Namespace) -> Exit:
             return _compare(options)
         if options.output and Path(options.output).suffix.lower() in WRITERS:
             return _write_tracks(options)
-        name, trace, times, step, asked = _chosen(options)
+        found, step = _chosen(options)
     except ReplayError as error:
         tell(f"{options.trace}: {error}")
         return Exit.VIOLATED
     if options.lanes:
-        _show_lanes(trace, unfolded=options.all)
+        _show_lanes(found.trace, unfolded=options.all)
     else:
-        _show_configuration(trace, step)
-    _write(options, name, trace, times, step, asked)
+        _show_configuration(found.trace, step)
+    _write(options, found, step)
     return Exit.HOLDS
 
 
@@ -129,8 +130,8 @@ def _write_tracks(options: Namespace) -> Exit:
     if is_recording(options.trace):
         count = write_recorded(options.trace, options.output)
     else:
-        _, trace, times, _, _ = _chosen(options)
-        count = write_traced(trace, times, options.output)
+        found, _ = _chosen(options)
+        count = write_traced(found.trace, found.times, options.output)
     tell(f"{counted(count, 'track')} written to {options.output}")
     return Exit.HOLDS
 
@@ -173,38 +174,15 @@ def _show_configuration(trace: Trace, step: int) -> None:
         say(print_loop(trace))
 
 
-def _write(
-    options: Namespace,
-    name: str,
-    trace: Trace,
-    times: tuple[float, ...],
-    step: int,
-    asked: tuple[Property, ...],
-) -> None:
+def _write(options: Namespace, found: Replayed, step: int) -> None:
     """Write the output by its suffix: a page, the lanes as a picture, or the picture of a configuration."""
     from bigactors.files import file_stem
-    from bigactors.pages import Story
     from bigactors.picture_files import draw, draw_lanes, write_page
     from bigactors.pictures import marks_of
-    from checker.reports.causes import causes_of
 
-    marks = marks_of(trace.initial, trace.configurations[step], asked)
-    output = options.output
+    name, trace, output = found.mission.name, found.trace, options.output
     if output is not None and Path(output).suffix.lower() in PAGES:
-        start = step if options.step is not None or trace.race is not None else 0
-        story = Story(
-            name,
-            "",
-            False,
-            trace,
-            start,
-            causes_of(trace),
-            times=times,
-            unfolded=options.all,
-            marks=marks,
-            properties=asked,
-        )
-        left_out = write_page(story, output)
+        left_out = write_page(_story(options, found, step), output)
         tell(f"page written to {output}")
         for line in left_out:
             tell(line)
@@ -220,14 +198,43 @@ def _write(
         output,
         f"{name}, c{step}",
         trace.configurations[step - 1] if step else None,
-        marks,
+        marks_of(trace.initial, trace.configurations[step], found.mission.properties),
     )
     tell(f"picture written to {output}")
 
 
-def _chosen(options: Namespace) -> tuple[str, Trace, tuple[float, ...], int, tuple[Property, ...]]:
-    """Return the mission's name, its trace, the steps' times, the configuration to show, and the properties."""
-    from bigactors.commands.replay.trace_reader import read_trace
+def _story(options: Namespace, found: Replayed, step: int) -> Story:
+    """Return the page of a trace: with the headline of the page that `check` wrote, if the trace is its own."""
+    from bigactors.mission_lookup import digest_of
+    from bigactors.pages import Story
+    from bigactors.pictures import marks_of
+    from checker.reports.causes import causes_of
+
+    trace, subject = found.trace, found.subject
+    violated = subject is not None and subject.violation is not None
+    opened = options.step is not None or trace.race is not None or violated
+    asked = found.mission.properties if subject is None else (subject.asked,)
+    notes = () if subject is None else (subject.about, *subject.details, digest_of(found.mission))
+    return Story(
+        found.mission.name,
+        "" if subject is None else subject.headline,
+        violated,
+        trace,
+        step if opened else 0,
+        causes_of(trace) if subject is None else subject.causes(trace),
+        notes=notes,
+        times=found.times,
+        unfolded=options.all,
+        marks=marks_of(
+            trace.initial, trace.configurations[step], asked, violated=None if subject is None else violated
+        ),
+        properties=found.mission.properties,
+    )
+
+
+def _chosen(options: Namespace) -> tuple[Replayed, int]:
+    """Return a trace with its mission, and the number of the configuration to show."""
+    from bigactors.commands.replay.trace_reader import Replayed, read_trace
     from bigactors.mission_lookup import open_mission, variation_of
     from checker import Trace
 
@@ -244,7 +251,7 @@ def _chosen(options: Namespace) -> tuple[str, Trace, tuple[float, ...], int, tup
             )
             raise Mistake(f"{word} a trace", "give the trace with --trace")
         mission = open_mission(options.file, variation_of(options))
-        return mission.name, Trace(mission.initial), (), 0, mission.properties
+        return Replayed(mission, Trace(mission.initial)), 0
     found = read_trace(options.trace, options.file, variation_of(options), dict(options.name))
     trace = found.trace
     step = len(trace) if options.step is None else options.step
@@ -254,4 +261,4 @@ def _chosen(options: Namespace) -> tuple[str, Trace, tuple[float, ...], int, tup
             f"give --step 0 to {len(trace)}",
             options.trace,
         )
-    return found.mission.name, trace, found.times, step, found.mission.properties
+    return found, step

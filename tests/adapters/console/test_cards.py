@@ -78,6 +78,15 @@ def test_before_the_start_a_vehicle_that_refuses_to_arm_is_watched(tape):
         assert so(tape.card()) == card
 
 
+def test_who_pressed_start_is_among_what_was_done_once(tape):
+    tape.turn(0, uav(WEST, 0))
+    for state, by in (("ready", ""), ("begun", "Ana"), ("begun", "Ana")):
+        tape.recorder.preflight({"state": state, "by": by, "items": []}, 1000.5)
+    assert [(each["what"], each["by"], each["state"]) for each in tape.actions()] == [
+        ("start", "Ana", "confirmed")
+    ]
+
+
 def test_a_vehicle_with_nothing_to_do_says_first_for_whom_its_own_bigactor_waits(tmp_path):
     text = FLIGHT.replace("BigActor a hosted_at uav0", "BigActor z hosted_at uav0")
     text = text.replace("FLY a", "FLY z").replace('send "there" to op', 'react { case "on" => skip }')
@@ -112,6 +121,52 @@ def test_a_request_that_cannot_be_served_is_wrong(tmp_path):
         blocked = f"CTR(a, MOVE_HOST_TO west0) is inconsistent: {where}; it stays pending"
         assert blocked in [alert["message"] for alert in tape.shown()["alarms"].values()]
         assert f"its request is inconsistent: {where}; it stays pending" in tape.card()["why"]
+
+
+def test_a_request_is_blocked_only_while_l_and_p_block_it(tmp_path):
+    text = FLIGHT.replace(
+        "  observe(CHILDREN(east0))", '  react { case "on" => control(MOVE_HOST_TO west0) }\n  observe(ALL)'
+    )
+    with Tape(tmp_path / "r.mcap", text.replace("environment {", 'environment {\n  says "on" to a')) as tape:
+        tape.turn(0, uav(WEST, 0))
+        tape.turn(60, uav(EAST, 60))
+        tape.turn(61, uav(BETWEEN, 61))
+        tape.turn(62, sayings=[("a", "on")])
+        tape.turn(63, uav(BETWEEN, 63), reports=[TakenOver("uav0", 1063.0, "a pilot flies it")])
+        assert "its request is inconsistent" in tape.card()["why"]
+        tape.turn(64, uav(EAST, 64))
+        card = tape.card()
+        assert card["request"]["text"] == "CTR(a, MOVE_HOST_TO west0)"
+        assert "inconsistent" not in card["why"]
+        assert [each["kind"] for each in tape.shown()["alarms"].values()].count("blocked") == 1
+        assert "its request is inconsistent" in tape.card(63)["why"]
+
+
+def test_a_vehicle_in_the_air_that_no_bigactor_will_ask_for_anything_again_is_watched(tmp_path):
+    text = FLIGHT.replace('  react { case "handover" => skip }\n  control(HAND uav0 TO gcs1)\n', "")
+    with Tape(tmp_path / "r.mcap", text) as tape:
+        tape.turn(0, uav(WEST, 0))
+        tape.turn(60, uav(EAST, 60))
+        tape.recorder.report(Status("uav0", 1060.5, "autopilot", 1060.5, "GUIDED", armed=True), 1060.5)
+        over = "it will get no more requests: every bigActor of the mission has ended"
+        assert so(tape.card()) == (1, "watch", over)
+
+
+def test_the_card_of_an_ended_run_tells_the_last_known_state_and_nothing_that_would_come(tape):
+    tape.turn(0, uav(WEST, 0))
+    tape.turn(3, uav(BETWEEN, 3))
+    tape.end(70)
+    assert so(tape.card()) == (0, "ended", "")
+    assert says(tape.card(), link={"heard": 1003.0, "lost": False, "over": True}, believed="west0")
+    assert says(tape.card(2), link={"heard": 1000.0, "lost": False}, level=0, word="well")
+
+
+def test_the_card_of_an_ended_run_keeps_what_went_wrong(tape):
+    tape.turn(0, uav(WEST, 0))
+    tape.turn(9, reports=[LinkLost("uav0", 1009.0, 1002.0)])
+    tape.end(10)
+    assert says(tape.card(), level=3, word="lost")
+    assert tape.card()["why"].startswith("the link was lost; broken assumption: ")
 
 
 def test_arrival_is_what_the_rules_say_it_is_and_where_l_and_p_differ_after_it_is_wrong(tape):

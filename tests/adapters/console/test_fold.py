@@ -65,9 +65,8 @@ def test_spill_watch_is_shown_as_the_mission_says_it_goes(watched, rule, about, 
     if asked is not None:
         assert (card["request"]["text"], card["request"]["limit"]) == (asked, 1800.0)
         assert card["order"]["state"] == "accepted"
-    over = "it will get no more requests: every bigActor of the mission has ended"
-    is_over = about == "airfield0" and not asked
-    assert (card["level"], card["why"] == over) == (int(is_over), is_over)
+    is_over = about == "airfield0" and not asked  # the run ends with its mission
+    assert (card["level"], card["word"]) == (0, "ended" if is_over else "well")
 
 
 def test_the_authority_over_the_plane_is_handed_over(watched):
@@ -83,7 +82,7 @@ def test_at_the_end_of_spill_watch_all_is_known_and_its_track_is_whole(watched):
     assert {name: agent["state"] for name, agent in view["agents"].items()} == dict.fromkeys(
         ("pilot", "shore", "tower"), "has ended"
     )
-    assert view["clock"]["ended"] == "the run has ended"
+    assert view["clock"]["ended"] == "the mission has ended"
     assert view["clock"]["rate"] is None  # flown as fast as it can be computed
     assert len(view["steps"]) == 200
     assert view["mission"]["verified"] is True

@@ -374,6 +374,7 @@ def sees_it_end_as_it_should(ana):
     ana.sees(".calm", "The run has ended: the mission is complete. It is recorded in run.mcap.")
     ana.harness.stop_serving()
     ana.sees(".offline", "The run has ended")
+    ana.sees(".actions .none", "The run has ended: nothing can be done any more.")
     assert ana.texts(".card .level") == ["well"]
 
 

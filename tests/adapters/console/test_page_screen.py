@@ -349,6 +349,49 @@ def test_the_start_panel_shows_why_a_vehicle_refuses_to_arm_on_a_small_desk(oper
     assert ana.page.locator(".preflight .rows").evaluate_all(WIDER) == []
 
 
+OVERLAPPING = """([one, other]) => {
+  const textBoxes = (each) => {
+    const range = document.createRange();
+    range.selectNodeContents(each);
+    return [...range.getClientRects()];
+  };
+  const boxes = (selector) => [...document.querySelectorAll(selector)].filter((each) => each.checkVisibility())
+    .flatMap((each) => each.matches("button") ? [each.getBoundingClientRect()] : textBoxes(each));
+  const isBefore = (a, b) => a.right - 1 < b.left || a.bottom - 1 < b.top;
+  const isApart = (a, b) => isBefore(a, b) || isBefore(b, a);
+  const [first, second] = [boxes(one), boxes(other)];
+  if (first.length === 0 || second.length === 0) return -1;
+  return first.filter((a) => second.some((b) => !isApart(a, b))).length;
+}"""
+"""The number of texts and buttons of one selector that lie upon those of another; -1 if there are none."""
+
+
+def test_the_texts_of_the_time_line_do_not_meet_in_a_window_of_any_width(operates):
+    for width in (780, 900, 961, 1024):
+        ana = operates(size={"width": width, "height": 768})
+        ana.sees(".ends .shown", "UTC")
+        for other in (".legend .sort", ".transport button"):
+            assert ana.page.evaluate(OVERLAPPING, [".ends span", other]) == 0, (width, other)
+        assert ana.page.evaluate("innerWidth - document.querySelector('.timeline').scrollWidth") >= 0
+
+
+def test_the_button_that_enlarges_a_panel_covers_none_of_its_words(operates):
+    ana = operates(mode="replay", size={"width": 1024, "height": 768})
+    ana.sees(".panel .none", "nothing can be done in it")
+    assert ana.page.evaluate(OVERLAPPING, [".panel .none", ".enlarge"]) == 0
+
+
+def test_the_card_of_an_ended_run_says_when_its_vehicle_was_last_heard(operates):
+    ana = operates()
+    ana.opens("uav0")
+    ended = ana.harness.state["vehicles"]["uav0"] | {"level": 0, "word": "ended", "why": ""}
+    heard = ended["link"]["heard"]
+    ana.told(vehicles={"uav0": ended | {"link": {"heard": heard, "lost": False, "over": True}}})
+    ana.sees("[data-row=uav0] .level", "ended")
+    ana.sees("[data-row=uav0] .link", "last heard ")
+    ana.sees(".card[data-name=uav0]", "when last heard: 10.1 kn")
+
+
 # --- how it looks
 
 TEXTS = """() => {

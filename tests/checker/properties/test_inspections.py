@@ -20,7 +20,7 @@ from checker.verdicts import Outcome
 from semantics.properties.propositions import holds
 from semantics.state.requests import FLY
 from semantics.successors import expand
-from specs.elaboration import load_mission
+from specs.elaboration import load_mission, read_mission
 
 WATCH = "BigActor watch hosted_at gcs2 with_behavior { loop { observe(PARENT(HOST)) react { case obs => skip } } }\n"
 """It goes on, so that nothing stands still."""
@@ -93,6 +93,20 @@ UNMATCHED = {
 def test_an_unmatched_control_is_told_with_what_is_missing(host, command, words):
     text = f"BigActor a hosted_at {host} with_behavior {{ control({command}) }}\n"
     assert words in violation(consistency(text), "unmatched").details
+
+
+def test_a_control_into_a_place_of_a_wrong_kind_is_told_with_the_signature_that_it_lacks():
+    text = """signature standard { kind Buoy driven }
+world {
+  sea0: Location = box (37.1, -8.5) (37.0, -8.7)
+  buoy0: Buoy = point (37.3, -8.6)
+}
+BigActor a hosted_at buoy0 with_behavior { react { case ("go", place) => control(MOVE_HOST_TO place) } }
+environment { says ("go", sea0) to a }"""
+    found = violation(check(read_mission(text)).verdicts["local_consistency"], "unrealisable")
+    assert found.details == (
+        "no Location may contain a Buoy: the signature lacks 'kind Location contains Buoy'",
+    )
 
 
 def test_an_unrealisable_control_names_the_place_in_which_the_carrier_is_not():
