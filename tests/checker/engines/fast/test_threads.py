@@ -80,7 +80,17 @@ def seen(initial, threads, **options):
         assert sum(map(len, targets)) == found.transitions
         assert all((each >= 0).all() for each in targets)
     graph = found.survey.graph().targets.tolist()
-    return (rows.tolist(), list(map(int, found.origins)), numbers, inner.model.learned, interned, graph)
+    chosen = inner.choosing and inner.choosing.paths.kept(inner.size, inner.expanded)
+    paths = [each.tolist() for each in chosen or ()]
+    return (
+        rows.tolist(),
+        list(map(int, found.origins)),
+        numbers,
+        inner.model.learned,
+        interned,
+        graph,
+        paths,
+    )
 
 
 @crossed(UNTIMED, MANNERS)
@@ -102,56 +112,41 @@ SWARMS = {name: (body, robots, rest) for name, (body, rest, robots) in ORBITS.it
 }
 
 
-@crossed(list(SWARMS), MANNERS)
-def test_representatives_are_explored_alike_by_any_number_of_threads(name, variation, monkeypatch):
-    several, plain = variation
-    keep(monkeypatch, plain)
-    initial = mission(*SWARMS[name]).initial
-    alone, several = (
-        seen(initial, threads, reduce=Reduced(initial, (Reduction.SYMMETRY,))) for threads in (1, several)
-    )
-    assert several == alone
-
-
-CHOSEN = {
-    f"{'with symmetry' if symmetric else 'por'}-{threads}": (threads, symmetric)
-    for threads in SEVERAL
-    for symmetric in (False, True)
+REDUCTIONS = {
+    "symmetry": (Reduction.SYMMETRY,),
+    "por": (Reduction.POR,),
+    "both": (Reduction.POR, Reduction.SYMMETRY),
+}
+REDUCED = {
+    f"{name} {manner}": (REDUCTIONS[name], *MANNERS[manner]) for manner in MANNERS for name in REDUCTIONS
 }
 
 
-def assert_chosen_alike(initial, threads, symmetric, runs=()):
-    """Explore by ample sets with one thread and with several; the rows, paths and lessons are the same."""
-    wanted = tuple(Reduction) if symmetric else (Reduction.POR,)
-    paths = []
-    for number in (1, threads):
-        reduced = Reduced(initial, wanted, runs=runs)
-        found = explore(initial, engine=Engine.FAST, threads=number, limits=SOME, reduce=reduced)
-        search = found.survey.search
-        kept = search.choosing.paths.kept(search.size, search.expanded)
-        paths.append(([each.tolist() for each in kept], seen(initial, number, reduce=reduced)))
-    assert paths[0] == paths[1]
+def assert_reduced_alike(initial, reductions, threads, plain):
+    with pytest.MonkeyPatch.context() as patch:
+        keep(patch, plain)
+        alone, several = (
+            seen(initial, number, reduce=Reduced(initial, reductions)) for number in (1, threads)
+        )
+    assert several == alone
 
 
-@pytest.mark.usefixtures("kept")
-@crossed(UNTIMED, CHOSEN)
-def test_ample_sets_are_chosen_alike_by_any_number_of_threads(name, variation):
+@crossed(list(SWARMS), REDUCED)
+def test_swarms_are_reduced_alike_by_any_number_of_threads(name, variation):
+    assert_reduced_alike(mission(*SWARMS[name]).initial, *variation)
+
+
+@crossed(UNTIMED, REDUCED)
+def test_missions_are_reduced_alike_by_any_number_of_threads(name, variation):
     with suppress(RefusedError):
-        assert_chosen_alike(start(name), *variation)
+        assert_reduced_alike(start(name), *variation)
 
 
-@pytest.mark.usefixtures("kept")
-@crossed(list(SWARMS), CHOSEN)
-def test_ample_sets_of_swarms_are_chosen_alike_by_any_number_of_threads(name, variation):
-    loaded = mission(*SWARMS[name])
-    assert_chosen_alike(loaded.initial, *variation)
-
-
-@given(swarms(), st.sampled_from(list(CHOSEN.values())))
+@given(swarms(), st.sampled_from(list(REDUCED.values())))
 @examples(30)
-def test_ample_sets_of_generated_swarms_are_chosen_alike_by_any_number_of_threads(text, chosen):
+def test_generated_swarms_are_reduced_alike_by_any_number_of_threads(text, variation):
     with suppress(RefusedError):
-        assert_chosen_alike(load(text, "").initial, *chosen)
+        assert_reduced_alike(load(text, "").initial, *variation)
 
 
 @pytest.mark.parametrize("threads", [1, 3])
