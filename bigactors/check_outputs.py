@@ -175,7 +175,6 @@ CAUSES_OF_GAPS: Final = frozenset(
         Code.ALWAYS_THE_SAME,
         Code.NEVER_INSIDE,
         Code.HIDES_AN_ENTITY,
-        Code.SHOWS_ITSELF,
     )
 )
 """The codes of warnings that are the cause of a gap of coverage in the same line."""

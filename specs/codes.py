@@ -609,13 +609,6 @@ class Code(Enum):
         under way there, or there, at one time.""",
     )
 
-    SHOWS_ITSELF = (
-        "LS712",
-        "test of an observation that always has a member",
-        """`LINKED_TO(x)` shows x, `CHILDREN(PARENT(x))` shows x, and `HOSTED_AT_HOST` shows the bigActor that asks.
-        So the answer is never empty, as long as x is there. Leave x out to ask for others: `empty(obs - {HOST})`.""",
-    )
-
     # --- LS8: timing
     BAD_DURATION = (
         "LS801",

@@ -31,14 +31,12 @@ class Bodies:
         behaviours: The bodies of behaviours, by name.
         parameters: The unique names of each behaviour's parameters.
         schemas: The rules that controls name, inline rules included.
-        nodes: The statements as written, by their numbers.
     """
 
     agents: dict[str, ElaboratedBody] = field(default_factory=dict)
     behaviours: dict[str, ElaboratedBody] = field(default_factory=dict)
     parameters: dict[str, tuple[str, ...]] = field(default_factory=dict)
     schemas: dict[str, Schema] = field(default_factory=dict)
-    nodes: Sequence[s.Node] = ()
 
     def all(self) -> Iterator[ElaboratedBody]:
         """Yield every body."""
@@ -146,7 +144,6 @@ def elaborate_bodies(
     whole = Program(
         statements, behaviours, reactions, lines, program.branch_lines, declared, begun, homes, copies
     )
-    bodies.nodes = program.nodes
     if not names.findings:
         _warn_of_unpaced(bodies, whole, program.nodes, names)
     return bodies, whole
@@ -155,7 +152,7 @@ def elaborate_bodies(
 def _warn_of_unpaced(bodies: Bodies, program: Program, written: Sequence[s.Node], names: Names) -> None:
     """Warn once of each loop that makes requests and never waits, with all bigActors that run it."""
     found: dict[s.Span, tuple[s.Node, int, list[str]]] = {}
-    for agent, block in running(bodies):
+    for agent, block in _running(bodies):
         for loop in sorted(reachable(program, block)):
             asked = unpaced(program, loop)
             if asked:
@@ -171,7 +168,7 @@ def _warn_of_unpaced(bodies: Bodies, program: Program, written: Sequence[s.Node]
 _LET_WAIT = "let each turn wait: observe(PARENT(HOST)) react { case here: Observation => skip }"
 
 
-def running(bodies: Bodies) -> Iterator[tuple[str, Block]]:
+def _running(bodies: Bodies) -> Iterator[tuple[str, Block]]:
     """Yield each initial or spawned bigActor with its initial code."""
     yield from ((name, body.block) for name, body in bodies.agents.items())
     for name, sites in bodies.spawned.items():
@@ -244,7 +241,7 @@ def possible_hosts(bodies: Bodies, names: Names) -> dict[str, frozenset[str] | N
     """Return the possible hosts of the bigActors that run each body, by `body_key`; None for any host."""
     found: dict[str, set[str] | None] = {}
     for agent in names.agents:
-        hosts = hosts_of(agent, bodies, names)
+        hosts = _hosts_of(agent, bodies, names)
         for body in bodies.running(agent):
             known = found.setdefault(body_key(body), set())
             found[body_key(body)] = None if known is None or hosts is None else known | hosts
@@ -256,8 +253,7 @@ def body_key(body: ElaboratedBody) -> str:
     return body.name if body.is_agent else f"{body.name}()"
 
 
-def hosts_of(agent: str, bodies: Bodies, names: Names) -> set[str] | None:
-    """Return the possible hosts of a bigActor; None if a run decides."""
+def _hosts_of(agent: str, bodies: Bodies, names: Names) -> set[str] | None:
     declared = names.agents[agent]
     places: list[Expression] = [] if declared is None else [Literal(declared.text)]
     places += [site.host for site in bodies.spawned.get(agent, ())]

@@ -117,7 +117,6 @@ def _binary(node: s.BinaryOperation, scope: Scope, names: Names) -> Expression:
         return ShortCircuit(node.operator == "or", left, right)
     operator = node.operator.removeprefix("not ")
     names.demands += operands(operator, (node.left, node.right), (left, right))
-    names.note_size_test(node, operator, (left, right))
     applied = Apply(operator, (left, right))
     return Apply("not", (applied,)) if operator != node.operator else applied
 
@@ -135,7 +134,6 @@ def _call(node: s.FunctionCall, scope: Scope, names: Names) -> Expression:
     if not check_arity(node.function, len(arguments), OPERATORS[name].arity, names.findings):
         return MISTAKEN
     names.demands += operands(name, node.arguments, arguments)
-    names.note_size_test(node, name, arguments)
     return Apply(name, arguments)
 
 

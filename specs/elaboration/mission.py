@@ -37,7 +37,6 @@ from specs.elaboration.mission_mistakes import Findings
 from specs.elaboration.mobility import check_nesting, elaborate_mobility, fixed_entities, warn_of_outliers
 from specs.elaboration.names import Names
 from specs.elaboration.overflights import suspected_overflights
-from specs.elaboration.own_subjects import warn_of_own_subjects
 from specs.elaboration.realisability import Ground, check_controls
 from specs.elaboration.rules import elaborate_rules
 from specs.elaboration.signature import elaborate_signature
@@ -161,8 +160,6 @@ def elaborate(
     said = tuple(clause.message for clause in clauses if isinstance(clause, Says))
     inference = Inference(program, frozenset(names.kinds), frozenset(names.agents), said)
     types = check_types(names.demands, inference, names.findings)
-    if not names.findings:
-        warn_of_own_subjects(names, bodies, program, world, clauses, missable)
     ticks = None if timing is None else TickConversion(timing.tick, names.findings)
     places = frozenset(_with_an_inside(world, clauses))
     properties = elaborate_checks(mission, names, bodies, types, ticks, RegionContext(control, places))

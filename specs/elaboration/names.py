@@ -14,7 +14,6 @@ from semantics.state.signature import NO_ENTITIES, REGION, Signature
 from specs import syntax as s
 from specs.codes import Code
 from specs.elaboration.mission_mistakes import Findings, a, shorten
-from specs.elaboration.size_tests import SizeTest, size_test
 from specs.elaboration.type_constraints import Demand, Need, Use, unquoted
 
 SORTS: Final = ("entity", "agent", "family", "kind", "channel", "rule", "behaviour")
@@ -59,7 +58,6 @@ class Names:
         families: For each family, its members by their entities, in order.
         hiding: The spans of pattern variables that hide an entity or a bigActor, by its name.
         demands: The required types of expressions, checked when all types are known.
-        sizes: The tests of a collection's size in behaviours.
     """
 
     findings: Findings
@@ -74,12 +72,6 @@ class Names:
     lacking: set[str] = field(default_factory=set)
     hiding: dict[str, list[s.Span]] = field(default_factory=dict)
     demands: list[Demand] = field(default_factory=list)
-    sizes: list[SizeTest] = field(default_factory=list)
-
-    def note_size_test(self, node: s.Expression, operator: str, operands: tuple[Expression, ...]) -> None:
-        """Keep an operator on operands if it tests a collection's size."""
-        test = size_test(node, operator, operands)
-        self.sizes += () if test is None else (test,)
 
     def is_taken(self, sort: str, name: str) -> bool:
         """Whether a name is already declared with a sort that it can't share with this one."""

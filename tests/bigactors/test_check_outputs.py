@@ -168,17 +168,17 @@ def test_where_nothing_would_be_checked_there_is_no_pass(missions, bigactors, re
 def test_a_warning_on_the_text_takes_the_place_of_the_gap_that_it_explains_in_every_format(
     missions, bigactors
 ):
-    mission = Path(__file__).parents[1] / "corpus" / "warned" / "LS712_shows_itself.mission"
+    mission = Path(__file__).parents[1] / "corpus" / "warned" / "LS704_always_the_same.mission"
     code, out, _ = bigactors("check", str(mission), "--all", *IN_ALL_FORMATS)
     assert code == 0
     texts = written(missions)
     for text in (out, texts["junit"], texts["github"]):
-        assert "LS712" in text
-        assert not re.search(r":21: warning: this condition|line=21,title=warning::this condition", text)
+        assert "LS704" in text
+        assert not re.search(r":11: warning: this condition|line=11,title=warning::this condition", text)
     results = json.loads(texts["sarif"])["runs"][0]["results"]
-    line21 = [
+    line11 = [
         each["ruleId"]
         for each in results
-        if each["locations"][0]["physicalLocation"]["region"]["startLine"] == 21
+        if each["locations"][0]["physicalLocation"]["region"]["startLine"] == 11
     ]
-    assert line21 == ["LS712"]
+    assert line11 == ["LS704"]
