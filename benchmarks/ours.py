@@ -120,7 +120,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     given = parser.parse_args(arguments)
     if given.cores is not None:
         os.sched_setaffinity(0, sorted(os.sched_getaffinity(0))[: given.cores])
-    from checker.engines.fast.numba_loading import ALONE  # noqa: PLC0415  # its time is measured
+    from checker.engines.fast.compiled.numba_loading import ALONE  # noqa: PLC0415  # its time is measured
 
     ALONE.set(True)  # as the command line does: nobody else compiles in this process
     with Compiling() as compiled:
@@ -150,7 +150,7 @@ class Compiling:
 
 def _timed_learning() -> list[float]:
     """Collect the seconds of each time that rules are run in Python, parts that are learned on the way among them."""
-    from checker.engines.fast.learner import CodedSource, Learner  # noqa: PLC0415
+    from checker.engines.fast.model.learner import CodedSource, Learner  # noqa: PLC0415
 
     seconds, learn, begun = [], Learner.learn, list[float]()
 

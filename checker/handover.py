@@ -33,11 +33,11 @@ class Compilation(NamedTuple):
 
     def is_done(self) -> bool:
         """Return whether the main loop of the check is in the cache of compiled loops."""
-        from checker.engines.fast.numba_loading import load_numba  # noqa: PLC0415 - numba takes its time to load
+        from checker.engines.fast.compiled.numba_loading import load_numba  # noqa: PLC0415 - numba takes its time to load
 
         load_numba()
         try:
-            from checker.engines.fast.loop_cache import is_compiled  # noqa: PLC0415 - the same
+            from checker.engines.fast.compiled.loop_cache import is_compiled  # noqa: PLC0415 - the same
 
             return is_compiled(self._main_loop())
         except RuntimeError:  # there is no folder for a cache
@@ -49,10 +49,10 @@ class Compilation(NamedTuple):
 
             return leave
         if Reduction.POR in self.reductions:
-            from checker.engines.fast.chosen_rows import store_chosen  # noqa: PLC0415 - the same
+            from checker.engines.fast.reduce.chosen_rows import store_chosen  # noqa: PLC0415 - the same
 
             return store_chosen
-        from checker.engines.fast.kernel import gather  # noqa: PLC0415 - the same
+        from checker.engines.fast.store.kernel import gather  # noqa: PLC0415 - the same
 
         return gather
 

@@ -80,7 +80,7 @@ def _check(mission: str, reductions: tuple[str, ...]) -> None:
 @contextmanager
 def rows(*, compressed: bool) -> Iterator[None]:
     """Compress the rows of every exploration meanwhile, or of none."""
-    from checker.engines.fast import row_store
+    from checker.engines.fast.store import row_store
 
     before = row_store.PLAIN, row_store.COMPRESSED_FROM
     row_store.PLAIN, row_store.COMPRESSED_FROM = (0, 0) if compressed else (1 << 30, 1 << 30)

@@ -17,7 +17,7 @@ from checker.engines.contract import (
     Reporter,
     ZoneClock,
 )
-from checker.engines.fast.numba_loading import load_numba
+from checker.engines.fast.compiled.numba_loading import load_numba
 from checker.engines.reference import explore_one_by_one
 from checker.limits import Limits
 from checker.models import Model, ModelExploration, State, explore_model

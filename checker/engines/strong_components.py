@@ -4,7 +4,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from checker.engines.fast.numba_loading import load_numba
+from checker.engines.fast.compiled.numba_loading import load_numba
 from checker.engines.graph import Numbers
 from checker.engines.tarjan import SearchRoom, divide
 
@@ -24,7 +24,7 @@ def strong_components(starts: Numbers, targets: Numbers) -> tuple[int, Numbers]:
         room = SearchRoom(*([0] * size for _ in range(5)))
         return divide(starts.tolist(), targets.tolist(), component, room), np.array(component, np.int32)
     load_numba()
-    from checker.engines.fast.compiled_components import divide_compiled  # noqa: PLC0415 - numba loads slowly
+    from checker.engines.compiled_components import divide_compiled  # noqa: PLC0415 - numba loads slowly
 
     found: Any = np.full(size, -1, np.int32)
     order, low, path, stack = (np.zeros(size, np.int32) for _ in range(4))

@@ -2,7 +2,7 @@ import time
 
 from scripts import script
 
-from checker.engines.fast.learner import Learner
+from checker.engines.fast.model.learner import Learner
 
 ours = script("ours")
 

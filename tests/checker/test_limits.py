@@ -7,7 +7,7 @@ import pytest
 import checker.engines.fast.explorer
 import checker.limits
 from checker import Engine, Keeping, Limits, Outcome, check, explore
-from checker.engines.fast import crosscheck
+from checker.engines.fast.search import crosscheck
 from checker.limits import GRACE, BoundMet, bounded, look
 from specs.elaboration import load_mission
 

@@ -69,7 +69,7 @@ OWN = {
     "bigraphs/examples/__init__.py",
     "bigraphs/exports/html.py",
     "checker/engines/cluster/ray_crew.py",
-    "checker/engines/fast/loop_cache.py",
+    "checker/engines/fast/compiled/loop_cache.py",
     "physical/land.py",
     "physical/svg/widths.py",
     "specs/grammar.py",

@@ -22,7 +22,7 @@ from checker import Cluster, CombinationError, Engine, Interruption, Keeping, Li
 from checker.check import reductions_of
 from checker.engines.capabilities import engines, features
 from checker.engines.contract import ZoneClock
-from checker.engines.fast.numba_loading import ALONE
+from checker.engines.fast.compiled.numba_loading import ALONE
 from checker.limits import MOST_PENDING, Stop
 from checker.reports.report import MARKS, SCREEN, coverage_text
 from checker.reports.results import Issue, caution_text

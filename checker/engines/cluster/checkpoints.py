@@ -18,13 +18,13 @@ from checker.engines.cluster import kernel
 from checker.engines.cluster.row_keys import DIGEST
 from checker.engines.cluster.shard import Shard, spelling
 from checker.engines.contract import CheckpointError
-from checker.engines.fast import repacking
-from checker.engines.fast.checkpoint import is_time
-from checker.engines.fast.columns import Packing
-from checker.engines.fast.learned_model import CROWDS, CUT, EXPANDED, LIMIT, SIZE
-from checker.engines.fast.origins import Elsewhere
-from checker.engines.fast.row_store import MOST_ROWS
-from checker.engines.fast.rows import Rows
+from checker.engines.fast.model.columns import Packing
+from checker.engines.fast.model.learned_model import CROWDS, CUT, EXPANDED, LIMIT, SIZE
+from checker.engines.fast.search.checkpoint import is_time
+from checker.engines.fast.store import repacking
+from checker.engines.fast.store.origins import Elsewhere
+from checker.engines.fast.store.row_store import MOST_ROWS
+from checker.engines.fast.store.rows import Rows
 
 SCHEMA = "bigactors.shard/3"
 UNKNOWN = -1

@@ -14,10 +14,10 @@ from checker.engines.cluster.shard import Shard, ShardProgress
 from checker.engines.cluster.transfer import RowParcel
 from checker.engines.cluster.worker_links import Links
 from checker.engines.contract import CheckpointError, Inspect, sample
-from checker.engines.fast.crosscheck import crosscheck, in_batch
-from checker.engines.fast.learned_model import AT
-from checker.engines.fast.row_graph import actions_of, pending_in_rows
-from checker.engines.fast.row_inspection import inspect_fast, is_still, truths
+from checker.engines.fast.model.learned_model import AT
+from checker.engines.fast.search.crosscheck import crosscheck, in_batch
+from checker.engines.fast.survey.row_graph import actions_of, pending_in_rows
+from checker.engines.fast.survey.row_inspection import inspect_fast, is_still, truths
 from checker.properties.inspections import Invariant
 from checker.properties.invariant_vacuity import asked
 from checker.properties.visited_statements import Visited

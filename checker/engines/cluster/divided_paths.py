@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from checker.engines.cluster.worker_links import Links
 from checker.engines.contract import CheckpointError
-from checker.engines.fast.mapped_arrays import Pages
+from checker.engines.fast.compiled.mapped_arrays import Pages
 
 Numbers = NDArray[np.int64]
 

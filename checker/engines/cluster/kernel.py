@@ -7,13 +7,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from checker.engines.fast.columns import WORD
-from checker.engines.fast.jit_decorators import inner, njit
-from checker.engines.fast.kernel import add_row
-from checker.engines.fast.learned_model import PLACE, SIZE, WORDS, State, SuccessorBatch
-from checker.engines.fast.prefetch import prefetch
-from checker.engines.fast.table import AHEAD, Words, bits_for, entry_of, fetch, find, hashed
-from checker.engines.fast.tree_compression import PAIR, FoldedTable, fold, take, unfold
+from checker.engines.fast.compiled.jit_decorators import inner, njit
+from checker.engines.fast.compiled.prefetch import prefetch
+from checker.engines.fast.compiled.table import AHEAD, Words, bits_for, entry_of, fetch, find, hashed
+from checker.engines.fast.model.columns import WORD
+from checker.engines.fast.model.learned_model import PLACE, SIZE, WORDS, State, SuccessorBatch
+from checker.engines.fast.store.kernel import add_row
+from checker.engines.fast.store.tree_compression import PAIR, FoldedTable, fold, take, unfold
 
 _ONE, _TWO, _HALF, _TOP = np.uint64(1), np.uint64(2), np.uint64(32), np.uint64(58)
 _PLACE, _WORD = np.uint64(PLACE), np.uint64(WORD)

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from checker.engines.fast.columns import Columns
+from checker.engines.fast.model.columns import Columns
 from semantics.state.canonical import canonical
 
 DIGEST = 16

@@ -19,18 +19,18 @@ from checker.engines.cluster.divided_paths import DividedPaths, ReducedRound, pl
 from checker.engines.cluster.row_keys import Keys
 from checker.engines.cluster.transfer import ColumnUpdate, Dictionary, RowParcel, SentValues
 from checker.engines.cluster.worker_links import Links
-from checker.engines.fast import repacking
-from checker.engines.fast.columns import WORD, Packing, shifts
-from checker.engines.fast.effects import Deeper, Varies
-from checker.engines.fast.expander import Expander
-from checker.engines.fast.kernel import count as count_steps
-from checker.engines.fast.learned_model import AT, EXPANDED, SIFTED, SIZE, SuccessorBatch
-from checker.engines.fast.learner import Learner
-from checker.engines.fast.origins import Elsewhere
-from checker.engines.fast.row_search import choosing, chosen_steps, exchanging
-from checker.engines.fast.row_store import FIRST_ROWS, RowFormat, RowStore
-from checker.engines.fast.row_survey import RowSurvey
-from checker.engines.fast.rule_model import RuleModel
+from checker.engines.fast.model.columns import WORD, Packing, shifts
+from checker.engines.fast.model.effects import Deeper, Varies
+from checker.engines.fast.model.learned_model import AT, EXPANDED, SIFTED, SIZE, SuccessorBatch
+from checker.engines.fast.model.learner import Learner
+from checker.engines.fast.search.expander import Expander
+from checker.engines.fast.search.row_search import choosing, chosen_steps, exchanging
+from checker.engines.fast.search.rule_model import RuleModel
+from checker.engines.fast.store import repacking
+from checker.engines.fast.store.kernel import count as count_steps
+from checker.engines.fast.store.origins import Elsewhere
+from checker.engines.fast.store.row_store import FIRST_ROWS, RowFormat, RowStore
+from checker.engines.fast.survey.row_survey import RowSurvey
 from checker.reduction.reducer import Reduced
 from semantics.state.configuration import Configuration
 

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from checker.engines.fast.columns import Columns, Packing, Place
+from checker.engines.fast.model.columns import Columns, Packing, Place
 
 WORKERS_AT_MOST = 256
 

@@ -13,12 +13,12 @@ from pathlib import Path
 from bigraphs.resources import cores
 from checker.engines.contract import Exploration, Inspect, Options, Progress, sample
 from checker.engines.estimate import estimate
-from checker.engines.fast.checkpoint import Journey, resume, save
-from checker.engines.fast.compile_progress import compilation_uncounted
-from checker.engines.fast.learner import Learner
-from checker.engines.fast.row_graph import GraphSurvey
-from checker.engines.fast.row_inspection import inspect_fast
-from checker.engines.fast.row_search import RowSearch, choosing, exchanging
+from checker.engines.fast.model.learner import Learner
+from checker.engines.fast.search.checkpoint import Journey, resume, save
+from checker.engines.fast.search.compile_progress import compilation_uncounted
+from checker.engines.fast.search.row_search import RowSearch, choosing, exchanging
+from checker.engines.fast.survey.row_graph import GraphSurvey
+from checker.engines.fast.survey.row_inspection import inspect_fast
 from checker.engines.made_on_access import MadeOnAccess
 from checker.limits import EXPLORING, Bound, BoundMet, CheckPart, Limits, Stop, bounded, is_full, memory_left
 from semantics.state.configuration import Configuration
@@ -137,7 +137,7 @@ class _Explorer:
         """Inspect the explored configurations within the time limit; an unfinished inspection yields no findings."""
         try:
             if self.keeping.doubted:
-                from checker.engines.fast.crosscheck import crosscheck  # noqa: PLC0415  # for --paranoid only
+                from checker.engines.fast.search.crosscheck import crosscheck  # noqa: PLC0415  # for --paranoid only
 
                 crosscheck(
                     self.search.expander, sample(self.search.expanded, self.keeping.doubted), self.reduce

@@ -9,8 +9,8 @@ from functools import cached_property, partial, reduce
 import numpy as np
 from numpy.typing import NDArray
 
-from checker.engines.fast.proposition_table import Profiles
-from checker.engines.fast.row_inspection import truths
+from checker.engines.fast.survey.proposition_table import Profiles
+from checker.engines.fast.survey.row_inspection import truths
 from checker.engines.made_on_access import MadeOnAccess
 from checker.engines.timed.answers import (
     DateSpan,

@@ -12,9 +12,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from checker.engines.fast.canonicalise import led
-from checker.engines.fast.jit_decorators import inner
-from checker.engines.fast.table import Words
+from checker.engines.fast.compiled.jit_decorators import inner
+from checker.engines.fast.compiled.table import Words
+from checker.engines.fast.store.canonicalise import led
 from checker.engines.zones.location_views import (
     ACTORS,
     ANSWER,

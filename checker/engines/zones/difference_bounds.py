@@ -13,7 +13,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from checker.engines.fast.jit_decorators import njit
+from checker.engines.fast.compiled.jit_decorators import njit
 
 Matrix = NDArray[np.int32]
 

@@ -20,8 +20,8 @@ from checker.engines.contract import (
     ZoneClock,
     sample,
 )
-from checker.engines.fast.compile_progress import compilation_uncounted
-from checker.engines.fast.expander import Expander
+from checker.engines.fast.search.compile_progress import compilation_uncounted
+from checker.engines.fast.search.expander import Expander
 from checker.engines.made_on_access import MadeOnAccess
 from checker.engines.timed.exchanged_clocks import ClockExchange
 from checker.engines.timed.original_times import OriginalTimes
@@ -200,7 +200,7 @@ def _doubt(network: Network, count: int, reduce: Reduced | None) -> None:
         Disagreement: They differ.
     """
     if count:
-        from checker.engines.fast.crosscheck import crosscheck  # noqa: PLC0415  # for --paranoid only
+        from checker.engines.fast.search.crosscheck import crosscheck  # noqa: PLC0415  # for --paranoid only
 
         expander = Expander(network.model)
         network.model.see()

@@ -23,7 +23,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from checker.engines.fast.jit_decorators import inner, njit
+from checker.engines.fast.compiled.jit_decorators import inner, njit
 from checker.engines.zones.difference_bounds import FREE as MISSING
 from checker.engines.zones.difference_bounds import Matrix, end, extrapolate, restrict
 from checker.engines.zones.timed_automaton import (

@@ -7,10 +7,10 @@ from typing import Protocol
 
 import numpy as np
 
-from checker.engines.fast.arrays import Growing
-from checker.engines.fast.canonicalise import enter_all
-from checker.engines.fast.learner import Learner
-from checker.engines.fast.symmetry_tables import Exchanging
+from checker.engines.fast.compiled.arrays import Growing
+from checker.engines.fast.model.learner import Learner
+from checker.engines.fast.reduce.symmetry_tables import Exchanging
+from checker.engines.fast.store.canonicalise import enter_all
 from checker.engines.timed.exchanged_clocks import ClockExchange
 from checker.engines.zones.clock_images import ClockImages, FormerNames
 from checker.reduction.configuration_renaming import mentioned

@@ -12,13 +12,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from checker.engines.fast.decision_leaves import ALIKE, END, FIRST, LEAF, STEP, TURN
-from checker.engines.fast.jit_decorators import inner, njit
-from checker.engines.fast.kernel import add_row
-from checker.engines.fast.learned_model import AT, KEPT, NODE, SIZE, UNKNOWN, WORDS, LearnedModel
-from checker.engines.fast.make_successors import make_plain, put_stored
-from checker.engines.fast.table import Words, bits_for, entry_of, find, hashed
-from checker.engines.fast.tree_compression import FoldedTable, unfold
+from checker.engines.fast.compiled.jit_decorators import inner, njit
+from checker.engines.fast.compiled.table import Words, bits_for, entry_of, find, hashed
+from checker.engines.fast.model.decision_leaves import ALIKE, END, FIRST, LEAF, STEP, TURN
+from checker.engines.fast.model.learned_model import AT, KEPT, NODE, SIZE, UNKNOWN, WORDS, LearnedModel
+from checker.engines.fast.store.kernel import add_row
+from checker.engines.fast.store.make_successors import make_plain, put_stored
+from checker.engines.fast.store.tree_compression import FoldedTable, unfold
 from checker.engines.zones import timed_automaton as automata
 from checker.engines.zones.clock_images import UNNAMED, note_names
 from checker.engines.zones.difference_bounds import NONE

@@ -8,10 +8,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from checker.engines.fast.decision_leaves import CROWDED, END, FIRST, FLAGS, LEAF, STEP, TURN
-from checker.engines.fast.jit_decorators import inner
-from checker.engines.fast.learned_model import AT, TREE, LearnedModel, code_at, first_turn, walk
-from checker.engines.fast.table import Words
+from checker.engines.fast.compiled.jit_decorators import inner
+from checker.engines.fast.compiled.table import Words
+from checker.engines.fast.model.decision_leaves import CROWDED, END, FIRST, FLAGS, LEAF, STEP, TURN
+from checker.engines.fast.model.learned_model import AT, TREE, LearnedModel, code_at, first_turn, walk
 
 Ints = NDArray[np.int32]
 State = NDArray[np.int64]

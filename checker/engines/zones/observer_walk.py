@@ -8,7 +8,7 @@ from enum import IntEnum
 import numpy as np
 from numpy.typing import NDArray
 
-from checker.engines.fast.jit_decorators import njit
+from checker.engines.fast.compiled.jit_decorators import njit
 from checker.engines.zones.timed_automaton import EDGE, EDGES, EDGES_END, LOCATION, TARGET
 
 Ints = NDArray[np.int32]

@@ -8,7 +8,7 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from checker.engines.fast.arrays import Growing
+from checker.engines.fast.compiled.arrays import Growing
 from checker.engines.zones.difference_bounds import NONE
 from checker.engines.zones.observer_walk import ObserverClock, Rule, walk
 from checker.engines.zones.participants import WatchedParticipants

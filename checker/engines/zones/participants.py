@@ -13,13 +13,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from checker.engines.fast.arrays import Growing
-from checker.engines.fast.decision_leaves import COPIES, COPIES_END, PAIR, STEP, WRITES, WRITES_END
+from checker.engines.fast.compiled.arrays import Growing
+from checker.engines.fast.model.decision_leaves import COPIES, COPIES_END, PAIR, STEP, WRITES, WRITES_END
 from checker.engines.zones.step_footprints import LearnedFootprints
 from checker.engines.zones.timed_automaton import EDGE, FOOTPRINT, TimedAutomaton
 
 if TYPE_CHECKING:
-    from checker.engines.fast.learner import Learner
+    from checker.engines.fast.model.learner import Learner
 
 WORD = 64
 Bits = NDArray[np.bool_]

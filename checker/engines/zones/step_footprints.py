@@ -12,10 +12,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from checker.engines.fast.decision_leaves import FIRST, LEAF, PARTS, PARTS_END, STEP
-from checker.engines.fast.jit_decorators import inner
-from checker.engines.fast.learned_model import LearnedModel, walk
-from checker.engines.fast.table import Words
+from checker.engines.fast.compiled.jit_decorators import inner
+from checker.engines.fast.compiled.table import Words
+from checker.engines.fast.model.decision_leaves import FIRST, LEAF, PARTS, PARTS_END, STEP
+from checker.engines.fast.model.learned_model import LearnedModel, walk
 from checker.engines.zones.location_views import AGENTS, LearnedClocks, LocationView
 
 State = NDArray[np.int64]

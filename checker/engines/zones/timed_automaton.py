@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from checker.engines.contract import TickError
-from checker.engines.fast.arrays import Growing
+from checker.engines.fast.compiled.arrays import Growing
 from checker.engines.zones.difference_bounds import MOST, NONE
 
 UNKNOWN = -1

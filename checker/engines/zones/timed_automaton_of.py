@@ -17,14 +17,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from checker.engines.contract import WindowsError
-from checker.engines.fast.arrays import Growing
-from checker.engines.fast.decision_leaves import LEAF
-from checker.engines.fast.learned_model import LIMIT, NODE
-from checker.engines.fast.learner import Learner
-from checker.engines.fast.origins import OriginPages
-from checker.engines.fast.row_store import RowFormat, RowStore
-from checker.engines.fast.rule_model import RuleModel
-from checker.engines.fast.table import most_in
+from checker.engines.fast.compiled.arrays import Growing
+from checker.engines.fast.compiled.table import most_in
+from checker.engines.fast.model.decision_leaves import LEAF
+from checker.engines.fast.model.learned_model import LIMIT, NODE
+from checker.engines.fast.model.learner import Learner
+from checker.engines.fast.search.rule_model import RuleModel
+from checker.engines.fast.store.origins import OriginPages
+from checker.engines.fast.store.row_store import RowFormat, RowStore
 from checker.engines.timed.exchanged_clocks import ClockExchange
 from checker.engines.zones import location_successors, location_views
 from checker.engines.zones.clock_images import UNNAMED

@@ -10,7 +10,7 @@ import numpy as np
 
 from checker.engines.archive import Kinds, read_archive, write_archive
 from checker.engines.contract import CheckpointError
-from checker.engines.fast.checkpoint import ROWS, digest_of_columns, is_time, kept_rows, restore_rows
+from checker.engines.fast.search.checkpoint import ROWS, digest_of_columns, is_time, kept_rows, restore_rows
 from checker.engines.zones.timed_automaton_of import Network
 
 SCHEMA = "bigactors.timed_checkpoint/1"

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from checker.engines.fast.row_survey import BLOCK, RowSurvey
+from checker.engines.fast.survey.row_survey import BLOCK, RowSurvey
 from checker.engines.timed.answers import Times, shown_in_time
 from checker.engines.zones.timed_automaton_of import Network
 from checker.properties.inspections import InTime

@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from checker.engines.contract import Inspect
-from checker.engines.fast.learner import TransitionGroup
-from checker.engines.fast.row_inspection import (
+from checker.engines.fast.model.learner import TransitionGroup
+from checker.engines.fast.survey.row_inspection import (
     ALL,
     are_independent,
     collect,

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from checker.engines.fast.arrays import Growing
+from checker.engines.fast.compiled.arrays import Growing
 from checker.engines.zones import kernel
 from checker.engines.zones.difference_bounds import FREE
 from checker.engines.zones.kernel import (

@@ -32,8 +32,8 @@ from checker import (
 from checker.engines.capabilities import Feature, Why, pair_of
 from checker.engines.cluster import ray_crew, rounds, shard
 from checker.engines.contract import Cluster
-from checker.engines.fast import row_store
-from checker.engines.fast.rows import Rows
+from checker.engines.fast.store import row_store
+from checker.engines.fast.store.rows import Rows
 from checker.engines.zones import explorer as zones
 from specs.elaboration import read_mission
 

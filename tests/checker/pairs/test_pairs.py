@@ -17,7 +17,8 @@ from scale import IS_WHOLE
 
 from checker import CombinationError, Engine, Keeping, Limits, Reduction, ZoneClock, check
 from checker.check import reductions_of
-from checker.engines.fast import explorer, row_store
+from checker.engines.fast import explorer
+from checker.engines.fast.store import row_store
 from checker.engines.zones import explorer as timed_explorer
 from checker.reduction.refusals import RefusedError
 from specs.diagnostics import MissionError

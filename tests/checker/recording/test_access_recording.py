@@ -1,9 +1,9 @@
 """What is noted of a rule's reads, and what is not."""
 
-from checker.engines.fast.columns import packing
-from checker.engines.fast.decision_leaves import PAIR, STEP, WRITES, WRITES_END
-from checker.engines.fast.decision_trees import UNKNOWN
-from checker.engines.fast.learner import CodedSource, Learner, TransitionGroup
+from checker.engines.fast.model.columns import packing
+from checker.engines.fast.model.decision_leaves import PAIR, STEP, WRITES, WRITES_END
+from checker.engines.fast.model.decision_trees import UNKNOWN
+from checker.engines.fast.model.learner import CodedSource, Learner, TransitionGroup
 from checker.recording.access_recording import CellRecorder, ColumnQuestion, Edited
 from semantics.behaviours.observations import All, Observation
 from semantics.behaviours.program import Program

@@ -14,7 +14,7 @@ from test_symmetry import BOTH, LATE, SYMMETRY
 
 from benchmarks.patrol import COUNTS, mission_text
 from checker import Engine, Keeping, Limits, RefusedError, check, explore
-from checker.engines.fast.crosscheck import Disagreement
+from checker.engines.fast.search.crosscheck import Disagreement
 from checker.reduction import Reduced
 from checker.traces import replay, to_json
 from specs.elaboration import load_mission

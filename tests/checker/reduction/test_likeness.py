@@ -13,8 +13,8 @@ from shipped import UNTIMED
 from swarms import swarms
 
 from checker import Engine, Limits, explore
-from checker.engines.fast.interchangeable import Likeness
-from checker.engines.fast.rule_cache import Exchange, NoImage
+from checker.engines.fast.model.interchangeable import Likeness
+from checker.engines.fast.model.rule_cache import Exchange, NoImage
 from checker.recording.access_recording import ColumnQuestion
 from checker.reduction.configuration_renaming import Renaming
 from semantics.behaviours.expressions import Fault

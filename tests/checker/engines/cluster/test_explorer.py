@@ -16,8 +16,8 @@ from checker.engines.cluster import checkpoints, explorer, ray_crew, rounds, sha
 from checker.engines.cluster.checkpoints import KINDS, SCHEMA
 from checker.engines.cluster.explorer import Expedition
 from checker.engines.contract import Options
-from checker.engines.fast import row_store
-from checker.engines.fast.rows import Rows
+from checker.engines.fast.store import row_store
+from checker.engines.fast.store.rows import Rows
 from checker.properties.coverage import Visited
 from checker.properties.inspections import Arrival, Computation, DeadlockFreedom, LocalConsistency
 from checker.properties.races import ControlRaces

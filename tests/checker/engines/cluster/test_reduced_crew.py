@@ -20,8 +20,8 @@ from checker.engines.cluster import explorer, ray_crew, shard
 from checker.engines.cluster.divided_paths import NONE, DividedPaths
 from checker.engines.cluster.explorer import Expedition
 from checker.engines.contract import Options
-from checker.engines.fast import row_store
-from checker.engines.fast.crosscheck import Disagreement
+from checker.engines.fast.search.crosscheck import Disagreement
+from checker.engines.fast.store import row_store
 from checker.reduction import Reduced
 from semantics.properties.propositions import Inside
 from specs import MissionError

@@ -19,8 +19,11 @@ from checker import Engine, Keeping, Limits, check, explore
 from checker.engines.cluster import explorer as cluster
 from checker.engines.cluster.explorer import Expedition
 from checker.engines.contract import Options
-from checker.engines.fast import expander, explorer, learned_model, pipeline, row_store, tree_compression
-from checker.engines.fast.rows import Rows
+from checker.engines.fast import explorer
+from checker.engines.fast.model import learned_model
+from checker.engines.fast.search import expander, pipeline
+from checker.engines.fast.store import row_store, tree_compression
+from checker.engines.fast.store.rows import Rows
 from checker.reduction import Reduced, Reduction
 from semantics import Scheduler
 from semantics.races.monitor import monitored

@@ -20,7 +20,8 @@ from checker.engines.archive import read_archive, write_archive
 from checker.engines.cluster import checkpoints as shards
 from checker.engines.cluster.explorer import Expedition
 from checker.engines.contract import Options
-from checker.engines.fast import checkpoint, explorer
+from checker.engines.fast import explorer
+from checker.engines.fast.search import checkpoint
 from checker.reduction import Reduced, Reduction
 from specs.elaboration import load_mission
 

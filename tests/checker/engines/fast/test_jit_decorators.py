@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from numba import types
 
-from checker.engines.fast.jit_decorators import njit
+from checker.engines.fast.compiled.jit_decorators import njit
 
 ROOT = Path(__file__).parents[4]
 READ = [

@@ -14,7 +14,7 @@ import pytest
 
 from checker import CheckpointError, Engine, Keeping, Limits, check, explore
 from checker.engines.contract import sample
-from checker.engines.fast.crosscheck import Disagreement, crosscheck
+from checker.engines.fast.search.crosscheck import Disagreement, crosscheck
 from checker.engines.zones import explorer as timed_explorer
 from specs.elaboration import load_mission
 

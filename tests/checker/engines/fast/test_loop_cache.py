@@ -7,19 +7,17 @@ from importlib import import_module
 
 import pytest
 
-from checker.engines.fast import loop_cache
-from checker.engines.fast.loop_cache import ENGINES, LoopCache, stamp
+from checker.engines.fast.compiled import loop_cache
+from checker.engines.fast.compiled.loop_cache import ENGINES, LoopCache, stamp
 
-LOOPS = "from checker.engines.fast.jit_decorators import"
+LOOPS = "from checker.engines.fast.compiled.jit_decorators import"
 KERNEL = f"""\
 {LOOPS} njit
-from checker.engines.fast import (
-    sizes,
-)
+from checker.engines.fast import sizes
 from semantics.times import LATE
 """
 CALLER = """\
-from checker.engines.fast.jit_decorators import njit
+from checker.engines.fast.compiled.jit_decorators import njit
 from {home} import step
 
 @njit(cache=True)
@@ -28,7 +26,7 @@ def walk(x):
 """
 
 CALLEE = """\
-from checker.engines.fast.jit_decorators import inner
+from checker.engines.fast.compiled.jit_decorators import inner
 
 @inner(cache=True)
 def step(x):
@@ -40,11 +38,11 @@ def step(x):
 def engines(tmp_path):
     """Return a package of three engines' modules: a loop, a constant that it imports, and code that is not compiled."""
     folder = tmp_path / "checker" / "engines"
-    (folder / "fast").mkdir(parents=True)
+    (folder / "fast" / "store").mkdir(parents=True)
     texts = {
-        "fast/kernel.py": KERNEL,
+        "fast/store/kernel.py": KERNEL,
         "fast/sizes.py": "WORD = 64\n",
-        "fast/explorer.py": "from checker.engines.fast.kernel import walk\n",
+        "fast/explorer.py": "from checker.engines.fast.store.kernel import walk\n",
     }
     for name, text in texts.items():
         (folder / name).write_text(text, encoding="utf-8")
@@ -58,7 +56,7 @@ def engines(tmp_path):
 @pytest.mark.parametrize(
     ("name", "voids"),
     [
-        ("checker/engines/fast/kernel", True),
+        ("checker/engines/fast/store/kernel", True),
         ("checker/engines/fast/sizes", True),
         ("checker/engines/fast/explorer", False),
         ("semantics/times", True),
@@ -74,10 +72,16 @@ def test_the_cache_is_void_when_what_is_compiled_with_loops_changes(engines, nam
 
 def test_every_module_with_loops_is_in_the_stamp():
     compiled = {path.relative_to(ENGINES.parents[1]).as_posix() for path in loop_cache._compiled(ENGINES)}
-    engines = ("fast/kernel", "fast/table", "fast/columns", "zones/kernel", "cluster/kernel")
+    engines = (
+        "fast/store/kernel",
+        "fast/compiled/table",
+        "fast/model/columns",
+        "zones/kernel",
+        "cluster/kernel",
+    )
     assert {f"checker/engines/{name}.py" for name in engines} <= compiled
     assert "semantics/timing/actor_clocks.py" in compiled
-    assert "checker/engines/fast/rule_model.py" not in compiled
+    assert "checker/engines/fast/search/rule_model.py" not in compiled
 
 
 def test_a_changed_inner_loop_of_another_file_is_compiled_anew(tmp_path, monkeypatch):
@@ -87,7 +91,7 @@ def test_a_changed_inner_loop_of_another_file_is_compiled_anew(tmp_path, monkeyp
     folder.mkdir(parents=True)
     (folder / "loop_cache_caller.py").write_text(CALLER.format(home="loop_cache_callee"), encoding="utf-8")
     program = (
-        "import sys; from pathlib import Path; from checker.engines.fast import loop_cache; "
+        "import sys; from pathlib import Path; from checker.engines.fast.compiled import loop_cache; "
         "loop_cache.ENGINES = Path(sys.argv[1]); sys.path.insert(0, sys.argv[1]); "
         "import loop_cache_caller; print(loop_cache_caller.walk(1))"
     )
@@ -103,7 +107,7 @@ def test_a_changed_inner_loop_of_another_file_is_compiled_anew(tmp_path, monkeyp
 def test_an_index_of_modules_that_are_gone_is_empty(tmp_path, monkeypatch):
     """As after an update that renamed a module: the index of the old version is still in the same place."""
     monkeypatch.setattr("numba.core.config.CACHE_DIR", str(tmp_path))
-    loop = import_module("checker.engines.fast.bits").__dict__
+    loop = import_module("checker.engines.fast.compiled.bits").__dict__
     function = next(each.py_func for each in loop.values() if hasattr(each, "py_func"))
     found = LoopCache(function)._cache_file
     found.save("key", b"data")

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from bigraphs.resources import memory_taken
-from checker.engines.fast.mapped_arrays import HUGE, Pages
+from checker.engines.fast.compiled.mapped_arrays import HUGE, Pages
 
 
 def test_pages_grow_in_place_and_keep_what_was_written():

@@ -6,8 +6,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scale import examples
 
-from checker.engines.fast.jit_decorators import njit
-from checker.engines.fast.origins import BLOCK, WORD, Elsewhere, Rising, note_origin
+from checker.engines.fast.compiled.jit_decorators import njit
+from checker.engines.fast.store.origins import BLOCK, WORD, Elsewhere, Rising, note_origin
 
 
 @njit()

@@ -4,8 +4,8 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from checker.engines.fast import repacking
-from checker.engines.fast.columns import packing, shifts
+from checker.engines.fast.model.columns import packing, shifts
+from checker.engines.fast.store import repacking
 
 
 @given(st.data())

@@ -6,10 +6,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scale import examples
 
-from checker.engines.fast.jit_decorators import njit
-from checker.engines.fast.proviso_paths import BLOCK, WORD, SearchPaths, begin_row, end_of, lead_on
-from checker.engines.fast.proviso_paths import intern as number_of
-from checker.engines.fast.tree_compression import MOST
+from checker.engines.fast.compiled.jit_decorators import njit
+from checker.engines.fast.reduce.proviso_paths import BLOCK, WORD, SearchPaths, begin_row, end_of, lead_on
+from checker.engines.fast.reduce.proviso_paths import intern as number_of
+from checker.engines.fast.store.tree_compression import MOST
 from checker.reduction import cycle_proviso
 
 PARTS = 70

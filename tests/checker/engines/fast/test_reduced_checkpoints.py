@@ -11,7 +11,8 @@ from shipped import UNTIMED
 from swarms import LOOKS, ORBITS, mission, swarms
 
 from checker import CheckpointError, Engine, Keeping, Limits, RefusedError, Stop, explore
-from checker.engines.fast import explorer, row_store
+from checker.engines.fast import explorer
+from checker.engines.fast.store import row_store
 from checker.reduction import Reduced, Reduction
 from semantics.properties.property import watching
 from specs.elaboration import load_mission

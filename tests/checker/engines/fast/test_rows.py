@@ -10,7 +10,7 @@ from scale import IS_WHOLE
 
 from checker import Engine, Keeping, Limits, explore
 from checker.engines.fast import explorer
-from checker.engines.fast.rows import Rows
+from checker.engines.fast.store.rows import Rows
 
 HOPS = """signature { kind Location contains UAV  kind UAV driven }
 world {

@@ -10,7 +10,7 @@ import pytest
 import checker.limits
 from bigraphs.resources import memory_taken
 from checker import Engine, Limits, explore
-from checker.engines.fast.mapped_arrays import Pages
+from checker.engines.fast.compiled.mapped_arrays import Pages
 from specs.elaboration import load_mission
 
 MEGABYTE = 1_000_000

@@ -4,10 +4,7 @@ import numpy as np
 import pytest
 
 from checker import Limits
-from checker.engines.fast import expander
-from checker.engines.fast.learner import Learner
-from checker.engines.fast.row_search import RowSearch
-from checker.engines.fast.table import (
+from checker.engines.fast.compiled.table import (
     ENTERED,
     alone,
     bits_for,
@@ -17,6 +14,9 @@ from checker.engines.fast.table import (
     rebuild,
     slots_for,
 )
+from checker.engines.fast.model.learner import Learner
+from checker.engines.fast.search import expander
+from checker.engines.fast.search.row_search import RowSearch
 from specs.elaboration import load_mission
 
 WIDTH = 2

@@ -15,18 +15,12 @@ import checker.limits
 from bigactors.cli import main
 from checker import Engine, Keeping, Limits, RefusedError, explore
 from checker.engines.contract import Options
-from checker.engines.fast import (
-    chosen_steps,
-    expander,
-    explorer,
-    frontier_chunks,
-    pipeline,
-    row_store,
-    tree_compression,
-)
-from checker.engines.fast.chosen_rows import REJECTED
+from checker.engines.fast import explorer
 from checker.engines.fast.explorer import explore_fast
-from checker.engines.fast.rows import Rows
+from checker.engines.fast.reduce.chosen_rows import REJECTED
+from checker.engines.fast.search import chosen_steps, expander, frontier_chunks, pipeline
+from checker.engines.fast.store import row_store, tree_compression
+from checker.engines.fast.store.rows import Rows
 from checker.reduction import Reduced, Reduction
 from semantics import hypothesis_strategies
 from semantics.properties.property import watching

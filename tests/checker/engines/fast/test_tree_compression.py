@@ -9,9 +9,9 @@ from scale import examples
 from shipped import UNTIMED
 
 from checker import Engine, Limits, explore
-from checker.engines.fast import row_store, tree_compression
-from checker.engines.fast.origins import Rising
-from checker.engines.fast.rows import Rows
+from checker.engines.fast.store import row_store, tree_compression
+from checker.engines.fast.store.origins import Rising
+from checker.engines.fast.store.rows import Rows
 from specs.elaboration import load_mission
 
 WORDS = st.integers(0, 2**64 - 1) | st.integers(0, 3)

@@ -15,8 +15,8 @@ from timed_reports import assert_alike
 
 from checker import Engine, Keeping, Limits, Outcome, RefusedError, check, explore
 from checker.check import BY_LOOKING
-from checker.engines.fast.canonicalise import represent
-from checker.engines.fast.jit_decorators import njit
+from checker.engines.fast.compiled.jit_decorators import njit
+from checker.engines.fast.store.canonicalise import represent
 from checker.properties.schedule import flights_of
 from checker.reduction import Reduced, Reduction
 from checker.reduction.symmetry import MissionSymmetry

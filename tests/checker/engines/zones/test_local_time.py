@@ -13,8 +13,8 @@ from timed_reports import assert_alike
 from timed_texts import text_of
 
 from checker import Engine, Keeping, Limits, ZoneClock, check, explore
-from checker.engines.fast.decision_leaves import FIRST, LEAF
-from checker.engines.fast.learner import TransitionGroup
+from checker.engines.fast.model.decision_leaves import FIRST, LEAF
+from checker.engines.fast.model.learner import TransitionGroup
 from checker.engines.zones.participants import WORD, Participants
 from checker.engines.zones.timed_automaton import EDGE, EDGES, EDGES_END, FOOTPRINT, LEARNED, LOCATION
 from checker.engines.zones.timed_automaton_of import Network

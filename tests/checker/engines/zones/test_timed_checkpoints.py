@@ -15,7 +15,7 @@ from timed_missions import with_timing
 import checker.limits
 from checker import CheckpointError, Engine, Keeping, Limits, explore
 from checker.engines.archive import read_archive, write_archive
-from checker.engines.fast import row_store
+from checker.engines.fast.store import row_store
 from checker.engines.timed.original_times import OriginalTimes
 from checker.engines.zones import explorer, timed_automaton_of, timed_checkpoint
 from checker.reduction import Reduced, Reduction

@@ -1,0 +1,1 @@
+"""The learned rules: decision trees over columns, with transitions at their leaves."""

@@ -1,0 +1,1 @@
+"""The compiled form of the reductions: ample sets with their cycle proviso, and the tables of symmetry."""

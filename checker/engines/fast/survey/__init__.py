@@ -1,0 +1,1 @@
+"""Questions to all rows of a search: findings, formulas, and the graph of its transitions."""
