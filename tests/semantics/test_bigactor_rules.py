@@ -10,7 +10,7 @@ from semantics.behaviours.patterns import Anything, Elements, Exactly
 from semantics.behaviours.program import Behaviour, Program
 from semantics.behaviours.statements import After, Case, Display, Loop, Migrate, Observe, React, Send, Spawn
 from semantics.behaviours.values import Text
-from semantics.bigactor_rules import migrate, rcv_msg, req_mgr, req_snd, say, snd, spawn, timeout
+from semantics.bigactor_rules import MOST_AGENTS, migrate, rcv_msg, req_mgr, req_snd, say, snd, spawn, timeout
 from semantics.environment import Drops, Says
 from semantics.races.monitor import monitored
 from semantics.state.initial import Beliefs
@@ -274,6 +274,14 @@ def test_migrate_changes_the_host():
     assert c.eta.all() == ()
 
 
+def test_in_no_order_a_migration_without_a_link_holds_up_no_other():
+    code = (Migrate(Literal("u0")), Migrate(Literal("u1")))
+    agents = {"a": ("u1", (0, 1))}
+    c = mission(["base", "u0", "u1"], code, agents, scheduler=Scheduler.UNORDERED)
+    (t,) = migrate(run(c, "req_mgr", "req_mgr"), "a")
+    assert str(t.label) == "⟨migrate : MGR(a, u1)⟩"
+
+
 def test_migrating_to_what_is_no_node_is_a_fault():
     for value in ("nowhere", "region", 1, frozenset({"u0", "u1"})):
         with pytest.raises(Fault):
@@ -291,6 +299,19 @@ def test_spawn_adds_an_agent_with_its_arguments(scheduler):
     assert c.alpha.names() == ("a", "c")
     assert (c.alpha.host("c"), c.alpha.code("c"), c.alpha.store("c")) == ("u1", (1,), (("x", Text("go")),))
     assert c.alpha.code("a") == ()
+
+
+@pytest.mark.parametrize("count", [MOST_AGENTS - 1, MOST_AGENTS])
+def test_there_are_only_so_many_agents(count):
+    code = (Spawn("c", Literal("u0"), "child", ()), Display(Literal(1)))
+    program = Program(code, {"child": Behaviour("child", (), (1,))}, COMMANDS)
+    others = {f"a{number}": ("u0", ()) for number in range(1, count)}
+    c = mission(["base", "u0"], agents={"a": ("u0", (0,)), **others}, program=program)
+    if count < MOST_AGENTS:
+        assert len(run(c, "spawn").alpha.names()) == MOST_AGENTS
+    else:
+        with pytest.raises(Fault, match=f"more than {MOST_AGENTS} agents"):
+            successors(c)
 
 
 def test_spawning_an_agent_that_is_there_is_a_fault():

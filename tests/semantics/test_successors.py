@@ -56,6 +56,13 @@ def test_the_run_of_figure_2_is_the_papers():
     assert successors(c) == ()
 
 
+def test_what_was_asked_is_served_before_any_agent_goes_on():
+    agents = {"a": ("u0", (0,)), "b": ("u1", (0,))}
+    c = mission(["base", "area", "u0", "u1"], (move_to("area"),), agents)
+    (asked,) = (t.target for t in successors(c) if t.label.agent == "b")
+    assert [(t.label.rule, t.label.agent) for t in successors(asked)] == [("actuate", "b"), ("req_ctr", "a")]
+
+
 # --- what holds of all rules ------------------------------------------------------------------------------------
 
 anywhere = hypothesis_strategies.configurations(hypothesis_strategies.initial_configurations(monitored=None))
