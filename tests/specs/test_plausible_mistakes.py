@@ -276,6 +276,19 @@ def test_a_remedy_has_the_words_that_were_meant(written, said):
     assert [f"{place} | {hint}" for place, _, hint in shown(PORT + ALONE + written)] == [said]
 
 
+def test_a_place_with_a_bad_border_is_not_said_to_be_a_point_too():
+    ferry = "signature { kind Box kind Boat driven carries Box kind Location contains Box, Boat }"
+    text = f"""{ferry}
+world {{
+  dock0: Location = circle (37.02, -8.62) radius -500 m
+  boat0: Boat = point (37.10, -8.60)
+  box0: Box carried by boat0
+}}
+BigActor a hosted_at boat0 with_behavior {{ control(PUT box0 IN dock0) }}"""
+    source = Source("m", text)
+    assert [each.code.number for each in diagnose(read(source), source, Path()).mistakes] == ["LS301"]
+
+
 FROM_FILE = """signature standard world { from "port.geojson" }
 BigActor a hosted_at tug with_behavior { control(MOVE_HOST_TO dock) send "x" to b }
 environment { vhf drops }
