@@ -168,6 +168,14 @@ def unnamed_property(at: ParsePoint) -> Diagnostic | None:
     return at.mistake(Code.UNEXPECTED, "expected the property's name before ':'", hint)
 
 
+def every_alone(at: ParsePoint) -> Diagnostic | None:
+    """`oilSpill0 drifts every 20 min`: events have a least time between them, and no rhythm."""
+    if at.found.text != "every" or not at.following.is_number or "at" not in at.accepted:
+        return None
+    hint = f"write at most every {_duration_at(at, at.following)}: the least time between two of them"
+    return at.mistake(Code.UNEXPECTED, "expected 'at most' before 'every'", hint)
+
+
 def limit_of_nobody(at: ParsePoint) -> Diagnostic | None:
     """`CTR within 5 min: return`, where `within` is taken for a bigActor."""
     if at.before.text != "within" or not at.found.is_number or "within" not in at.accepted:
@@ -217,6 +225,7 @@ TIMING_MISTAKES: Final[tuple[Callable[[ParsePoint], Diagnostic | None], ...]] = 
     exact_time,
     bad_duration,
     unnamed_property,
+    every_alone,
     limit_of_nobody,
     timeout_as_case,
     timed_change,

@@ -269,6 +269,12 @@ def test_a_remedy_is_what_was_meant_or_what_there_is(written, said):
          "control | a control authority is written control:gcs"),
         ("live { CTR within 5 min: return }",
          "within | write anyone within 5 min, or name the bigActor whose requests are limited"),
+        ("timing { boat drifts every 10 min to 20 min }",
+         "every | write at most every 10 min: the least time between two of them"),
+        ("timing { vhf drops every 10 min }",
+         "every | write at most every 10 min: the least time between two of them"),
+        ("live { on broken assumption return }", "return | write assumption: return"),
+        ("live { CTR p within 5 min hold }", "hold | write min: hold"),
         ("check { invariant my rule: uav in sea }", 'my | write it in double quotes: "my rule"'),
     ],
 )  # fmt: skip
