@@ -275,6 +275,8 @@ def test_a_remedy_is_what_was_meant_or_what_there_is(written, said):
          "every | write at most every 10 min: the least time between two of them"),
         ("live { on broken assumption return }", "return | write assumption: return"),
         ("live { CTR p within 5 min hold }", "hold | write min: hold"),
+        ("timing { boat drifts at most every 10 min to 20 min }",
+         "to | leave the longer one out: at most every 10 min"),
         ("check { invariant my rule: uav in sea }", 'my | write it in double quotes: "my rule"'),
     ],
 )  # fmt: skip
