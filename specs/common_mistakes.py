@@ -62,6 +62,7 @@ _SHORT: Final = 5
 _ONLY_FIRST: Final = frozenset({"always", "eventually", "race", "races", "deadlock", "deadlocks"})
 _DECIMAL: Final = re.compile(r"[(,]\s*-?(\d+(?:\.\d+)?)\s*\Z")
 _TITLE: Final = re.compile(r"[^\n:\"{}]*\w(?=\s*:)")
+_FALLBACKS: Final = frozenset({"hold", "return", "continue"})
 _QUANTIFIERS: Final = frozenset({"forall", "exists"})
 _NAMES_AFTER: Final = re.compile(r"\b(\w+)\s+((?:\w+\s*,\s*)*\w+)\s*\Z")
 _MOST_NAMES: Final = 200
@@ -669,6 +670,9 @@ def missing_kind(at: ParsePoint) -> Diagnostic | None:
         return Diagnostic(
             Code.MISSING_EQUALS, at.before.span, message, "write name: Kind = point (37.08, -8.55)"
         )
+    if at.accepted == {":"} and at.found.text in _FALLBACKS:
+        message = f"expected ':' before {at.found.shown}"
+        return at.mistake(Code.UNEXPECTED, message, f"write {at.before.text}: {at.found.text}")
     if at.accepted == {":"} and at.before.is_name:
         message = f"expected ':' and a kind behind {at.before.shown}, found {at.found.shown}"
         return at.mistake(Code.MISSING_KIND, message, "write name: Kind")

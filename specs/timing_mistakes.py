@@ -168,6 +168,22 @@ def unnamed_property(at: ParsePoint) -> Diagnostic | None:
     return at.mistake(Code.UNEXPECTED, "expected the property's name before ':'", hint)
 
 
+def every_alone(at: ParsePoint) -> Diagnostic | None:
+    """`oilSpill0 drifts every 20 min`: events have a least time between them, and no rhythm."""
+    if at.found.text != "every" or not at.following.is_number or "at" not in at.accepted:
+        return None
+    hint = f"write at most every {_duration_at(at, at.following)}: the least time between two of them"
+    return at.mistake(Code.UNEXPECTED, "expected 'at most' before 'every'", hint)
+
+
+def two_least_times(at: ParsePoint) -> Diagnostic | None:
+    """`oilSpill0 drifts at most every 10 min to 20 min`."""
+    if at.found.text != "to" or at.before.text not in UNITS or _back(at, 3).text != "every":
+        return None
+    hint = f"leave the longer one out: at most every {_back(at, 2).text} {at.before.text}"
+    return at.mistake(Code.UNEXPECTED, "'at most every' takes one time, the least between two events", hint)
+
+
 def limit_of_nobody(at: ParsePoint) -> Diagnostic | None:
     """`CTR within 5 min: return`, where `within` is taken for a bigActor."""
     if at.before.text != "within" or not at.found.is_number or "within" not in at.accepted:
@@ -217,6 +233,8 @@ TIMING_MISTAKES: Final[tuple[Callable[[ParsePoint], Diagnostic | None], ...]] = 
     exact_time,
     bad_duration,
     unnamed_property,
+    every_alone,
+    two_least_times,
     limit_of_nobody,
     timeout_as_case,
     timed_change,

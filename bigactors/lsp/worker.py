@@ -8,9 +8,11 @@ from __future__ import annotations
 
 import json
 import sys
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from bigactors.check_outputs import cautions_of, unexplained
 from bigactors.checking import Checked
 from bigactors.files import make_folder, write_text
 from bigactors.mission_lookup import digest_of
@@ -31,7 +33,7 @@ def main() -> None:
     limits = Limits(asked["configurations"], asked["seconds"])
     try:
         result = checked(source, Path(asked["directory"]), limits)
-        found = verdicts(result, Path(asked["folder"])) if "folder" in asked else {"report": result.as_json()}
+        found = verdicts(result, Path(asked["folder"])) if "folder" in asked else {"report": _report(result)}
     except MissionError as error:
         found = {"refused": render_all(error.diagnostics, error.source)}
     json.dump(found, sys.stdout)
@@ -46,6 +48,15 @@ def checked(source: Source, directory: Path, limits: Limits) -> Checked:
     require_bigactor(mission)
     report = check(mission, limits=limits, suspected=mission.suspicions)
     return Checked(source.name, mission, digest_of(mission), report, False)
+
+
+def _report(result: Checked) -> dict[str, Any]:
+    """Return the report without the gaps that a warning explains, which the editor shows in the same line."""
+    report = result.report
+    if report.coverage is None:
+        return result.as_json()
+    covered = unexplained(report.coverage, cautions_of(result.mission, report))
+    return replace(result, report=replace(report, coverage=covered)).as_json()
 
 
 def verdicts(result: Checked, folder: Path) -> dict[str, Any]:

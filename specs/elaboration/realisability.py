@@ -125,7 +125,12 @@ class Ground:
             return None
         shape, target = self.world.shape(node.name), self.world.placements.get(place.name)
         unknown = place.name not in self.fixed or node.name in self.mobility.drifting | self.mobility.coming
-        if unknown or shape is None or node.kind in self.names.signature[place.kind].carries:
+        if (
+            unknown
+            or shape is None
+            or target is None
+            or node.kind in self.names.signature[place.kind].carries
+        ):
             return None
         if not isinstance(target, Placed) or target.geometry.is_point:
             return (

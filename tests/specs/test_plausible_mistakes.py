@@ -269,11 +269,32 @@ def test_a_remedy_is_what_was_meant_or_what_there_is(written, said):
          "control | a control authority is written control:gcs"),
         ("live { CTR within 5 min: return }",
          "within | write anyone within 5 min, or name the bigActor whose requests are limited"),
+        ("timing { boat drifts every 10 min to 20 min }",
+         "every | write at most every 10 min: the least time between two of them"),
+        ("timing { vhf drops every 10 min }",
+         "every | write at most every 10 min: the least time between two of them"),
+        ("live { on broken assumption return }", "return | write assumption: return"),
+        ("live { CTR p within 5 min hold }", "hold | write min: hold"),
+        ("timing { boat drifts at most every 10 min to 20 min }",
+         "to | leave the longer one out: at most every 10 min"),
         ("check { invariant my rule: uav in sea }", 'my | write it in double quotes: "my rule"'),
     ],
 )  # fmt: skip
 def test_a_remedy_has_the_words_that_were_meant(written, said):
     assert [f"{place} | {hint}" for place, _, hint in shown(PORT + ALONE + written)] == [said]
+
+
+def test_a_place_with_a_bad_border_is_not_said_to_be_a_point_too():
+    ferry = "signature { kind Box kind Boat driven carries Box kind Location contains Box, Boat }"
+    text = f"""{ferry}
+world {{
+  dock0: Location = circle (37.02, -8.62) radius -500 m
+  boat0: Boat = point (37.10, -8.60)
+  box0: Box carried by boat0
+}}
+BigActor a hosted_at boat0 with_behavior {{ control(PUT box0 IN dock0) }}"""
+    source = Source("m", text)
+    assert [each.code.number for each in diagnose(read(source), source, Path()).mistakes] == ["LS301"]
 
 
 FROM_FILE = """signature standard world { from "port.geojson" }
