@@ -2,7 +2,7 @@
 
 import sys
 
-from bigactors.cli import main
+from bigactors.cli import script
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(script())

@@ -20,20 +20,23 @@ OBJECTS_BETWEEN_COLLECTIONS: Final = 200_000
 def main(line: Sequence[str] | None = None) -> int:
     """Run one command line (default: this process's) and return its exit code."""
     gc.set_threshold(OBJECTS_BETWEEN_COLLECTIONS)
-    if line is not None:
-        with ending_as_ctrl_c():
-            return _answered(line)
-    code = as_process(_own_line)
+    with ending_as_ctrl_c():
+        return _answered(sys.argv[1:] if line is None else line)
+
+
+def script() -> int:
+    """Run this process's command line; the process must end with the returned exit code."""
+    code = as_process(_completed_or_run)
     gc.freeze()  # the process ends: a last scan of all objects takes a quarter of a small check
     return code
 
 
-def _own_line() -> int:
+def _completed_or_run() -> int:
     if "_ARGCOMPLETE" in os.environ:  # a shell asks for completions
         from bigactors.commands.completion import complete  # noqa: PLC0415 - it builds the parsers of all commands
 
         complete()
-    return _answered(sys.argv[1:])
+    return main()
 
 
 def _answered(line: Sequence[str]) -> int:

@@ -17,7 +17,7 @@ ENDING: Final = tuple(
 
 
 def as_process(command: Callable[[], int]) -> int:
-    """Run a command whose exit code is that of this process, and return the code.
+    """Run a command whose exit code is that of this process, which must end, and return the code.
 
     From the return on, signals that end a process are ignored: Python would answer them with their default action
     while it ends, and the process would have another exit code than the one that its output explains.

@@ -87,7 +87,7 @@ def arguments() -> ArgumentParser:
 def main() -> int:
     """Fly the demonstration into a folder; return the exit code."""
     asked = arguments().parse_args()
-    return as_process(lambda: reported(lambda: demonstrate(asked.folder, asked.speed, console=asked.console)))
+    return reported(lambda: demonstrate(asked.folder, asked.speed, console=asked.console))
 
 
 def demonstrate(folder: Path, speed: float | None = None, *, console: bool = False) -> int:
@@ -222,4 +222,4 @@ def _replay(folder: Path, ending: Ending) -> bool:
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(as_process(main))

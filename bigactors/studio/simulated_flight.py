@@ -35,7 +35,7 @@ def main() -> int:
     """Fly a mission's file with recording, verdict and socket in a folder; return the exit code."""
     file, folder = sys.argv[1:]
     Thread(target=_end_with_input, daemon=True).start()
-    return as_process(lambda: reported(lambda: _flown(file, Path(folder))))
+    return reported(lambda: _flown(file, Path(folder)))
 
 
 def _end_with_input() -> None:
@@ -79,4 +79,4 @@ def _driven(mission: ElaboratedMission) -> list[str]:
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(as_process(main))

@@ -20,13 +20,19 @@ run(Simulator(address, [vehicle]).run(), float(speed))
 """
 
 
+GIVEN = set()
+
+
 def free_port():
-    """Return a port that nobody has, below those that the system gives away meanwhile to whoever connects."""
+    """Return a port that nobody has, below those that the system gives away to whoever connects; each only once."""
     while True:
         port = SystemRandom().randrange(20_000, 32_000)
+        if port in GIVEN:
+            continue
         with socket.socket() as tcp, socket.socket(type=socket.SOCK_DGRAM) as udp, suppress(OSError):
             tcp.bind(("127.0.0.1", port))
             udp.bind(("127.0.0.1", port))
+            GIVEN.add(port)
             return port
 
 

@@ -22,7 +22,7 @@ def send(*_, **__):
 from bigactors import cli
 {prelude}
 sys.argv[1:] = {list(words)!r}
-sys.exit(cli.main())
+sys.exit(cli.script())
 """
 
     def run(number):
@@ -60,10 +60,11 @@ def test_a_signal_during_a_command_makes_it_incomplete(number, moment):
 
 def test_a_program_that_runs_a_command_keeps_its_handlers():
     program = """
-import signal
+import signal, sys
 from bigactors.cli import main
+sys.argv[1:] = ["explain", "LS101"]
 before = [signal.getsignal(each) for each in (signal.SIGINT, signal.SIGTERM)]
-assert main(["explain", "LS101"]) == 0
+assert main(["explain", "LS101"]) == main() == 0
 assert [signal.getsignal(each) for each in (signal.SIGINT, signal.SIGTERM)] == before
 """
     subprocess.run([sys.executable, "-c", program], check=True, stdout=subprocess.DEVNULL)

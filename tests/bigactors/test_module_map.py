@@ -12,6 +12,6 @@ def test_a_map_has_each_module_with_a_sentence():
 def test_the_map_of_a_folder_is_printed(capsys):
     assert main(["checker/engines/fast"]) == 0
     lines = capsys.readouterr().out.splitlines()
-    assert any(line.startswith("kernel ") for line in lines)
+    assert any(line.startswith("store/kernel ") for line in lines)
     assert main(["nowhere"]) == 2
     assert main([]) == 2
