@@ -85,8 +85,8 @@ def leads_away(
 ) -> bool:
     """Return whether the path from a successor does not return to its row, or that its step leads forward, if asked.
 
-    Parts on a path that returns are added to `taken`. In a divided search, and ahead of a row's turn, the answer is only
-    assumed.
+    Parts on a path that returns are added to `taken`. In a divided search, and ahead of a row's turn, the answer is
+    only assumed.
     """
     if trails.end == AT_ITS_TURN:
         return True
