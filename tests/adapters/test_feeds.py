@@ -107,6 +107,9 @@ async def test_ais_comes_by_tcp_in_pieces_and_the_connection_is_made_again():
     async with server, running(AisFeed("ais", f"tcp:127.0.0.1:{port}").run(world)):
         await until(lambda: len(connections) == 3)
         await wait()
+    for each in connections:  # the last receiver may be at work still
+        each.close()
+        await each.wait_closed()
     assert len(world.published) == 3
 
 
