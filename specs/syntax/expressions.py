@@ -124,7 +124,7 @@ class QueryApplication(Node):
     A relation, applied to each node that the inner query shows. `PARENT_HOST`, `CHILDREN_HOST`, `LINKED_TO_HOST` and
     `HOSTED_AT_HOST` are short for the relation of `HOST`. `CHILDREN(x)` also shows x, so `x in o` is true; `size`,
     `empty`, `first`, `of`, `for` and `choose` use only the children. Of `LINKED_TO(x)`, x is a member: without it,
-    `empty(o - {x})` says whether nobody else is linked.
+    `empty(o - {x})` is true if no other node is linked.
     """
 
     relation: QueryOperator

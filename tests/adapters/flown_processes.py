@@ -24,7 +24,7 @@ GIVEN = set()
 
 
 def free_port():
-    """Return a port that nobody has, below those that the system gives away to whoever connects; each only once."""
+    """Return a free port, each only once, below those that the system gives to outgoing connections."""
     while True:
         port = SystemRandom().randrange(20_000, 32_000)
         if port in GIVEN:

@@ -285,7 +285,7 @@ class Shard:
         self._deal()
 
     def _learn(self) -> None:
-        """Learn what gathering lacked at a row."""
+        """Learn the rule that gathering lacked at a row."""
         self.learned.add(int(self.store.state[AT]))
         self.expander.learn()
 

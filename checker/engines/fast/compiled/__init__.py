@@ -1,1 +1,1 @@
-"""Compiled loops and the arrays that they read: what every part of the fast engine uses."""
+"""The compilation of loops, and the arrays that they read, for every part of the fast engine."""

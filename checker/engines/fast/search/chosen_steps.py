@@ -65,7 +65,7 @@ class ChosenSteps:
         self.expander = expander
         self.store = expander.store
         self.choosing = choosing
-        # A single thread had better learn what is missing at once.
+        # A single thread had better learn missing rules at once.
         self.deferred = frontier_chunks.LATER_ROWS if threads > 1 else 1
         self._own: tuple[tuple[int, int, int], ChosenBatch] | None = None
 
@@ -111,7 +111,7 @@ class ChosenSteps:
             row = self.store.expanded
 
     def expand_next(self) -> None:
-        """Expand the next row at its turn, or learn what that lacks."""
+        """Expand the next row at its turn, or learn its missing rule."""
         state, begin, batch = self.store.state, self.store.expanded, self._own_batch()
         state[[AT, GATHERED, SIFTED, PUT_OFF]] = begin, 0, 0, 0
         known = self._gather(self.tables(is_alone=True), batch, begin, begin + 1, state, 0)

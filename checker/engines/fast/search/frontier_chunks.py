@@ -41,7 +41,7 @@ class ChunkSteps(Protocol):
         """Store part of a chunk, as long as it is not void."""
 
     def expand_next(self) -> None:
-        """Expand the next row at its turn, or learn what that lacks."""
+        """Expand the next row at its turn, or learn its missing rule."""
 
 
 class AllSteps:
@@ -80,7 +80,7 @@ class AllSteps:
         self.expander.add(part.batch, (begin.steps, end.steps), (begin.found, end.found), end.row)
 
     def expand_next(self) -> None:
-        """Expand the next row at its turn, or learn what that lacks."""
+        """Expand the next row at its turn, or learn its missing rule."""
         self.expander.expand(self.store.expanded + 1)
 
 
