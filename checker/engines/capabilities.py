@@ -41,13 +41,12 @@ class Why(Enum):
 
     MATHEMATICS = "by mathematics"
     DESIGN = "by design"
-    IDLE = "accepted, without effect"
     UNDECIDED = "accepted; some properties stay incomplete"
 
     @property
     def is_refusal(self) -> bool:
         """Whether such a pair is an error."""
-        return self not in (Why.IDLE, Why.UNDECIDED)
+        return self is not Why.UNDECIDED
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,7 +56,7 @@ class UnsupportedPair:
     Attributes:
         one: A feature.
         other: The other feature.
-        why: Whether it cannot work, or has no effect.
+        why: Whether it cannot work, or leaves some properties undecided.
         reason: The message.
         remedy: What to do instead.
         unless: Features of which each lifts the refusal.
@@ -119,7 +118,6 @@ UNSUPPORTED: Final = (
         "ways are compared in every configuration, and 'por' leaves configurations out", _REDUCE),
     _P(_F.WAYS, _F.SYMMETRY, _W.MATHEMATICS,
         "ways are those of each vehicle, and 'symmetry' visits one of several alike", _REDUCE),
-    _P(_F.THREADS, _F.TIMING, _W.IDLE, "the search runs on one thread", ""),
     _P(_F.RUNS, _F.POR, _W.UNDECIDED, "X, enabled, fairness and progress depend on the order of "
         "independent steps (docs/explanation/reduction.md)", _REDUCE),
     _P(_F.RUNS, _F.SYMMETRY, _W.UNDECIDED, "progress and some formulas distinguish interchangeable entities "

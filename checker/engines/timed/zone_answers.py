@@ -412,10 +412,11 @@ class ZoneTimes:
     def explored(self, observer: Observer) -> tuple[Observer, Search]:
         """Return an observer with a search of its automaton, to the end or to its goal."""
         start = observer.automaton, 0, observer.first_ages()
-        search = Search(*start, is_local=observer.participants is not None)
+        threads = self.search.threads
+        search = Search(*start, is_local=observer.participants is not None, threads=threads)
         search.finish(look)
         if search.is_far:
-            search = Search(*start)
+            search = Search(*start, threads=threads)
             search.finish(look)
         return observer, search
 

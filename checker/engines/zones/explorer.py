@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from bigraphs.resources import cores
 from checker.engines.contract import (
     Exploration,
     Inspect,
@@ -103,10 +104,11 @@ def _digest(options: Options, *, is_local: bool) -> str:
 class _Learning(Search):
     """A search that unfolds the locations it reaches."""
 
-    def __init__(self, network: Network) -> None:
+    def __init__(self, network: Network, threads: int) -> None:
         self.network = network
         is_local = network.participants is not None
-        super().__init__(network.automaton, network.first, network.first_ages, is_local=is_local)
+        start = network.automaton, network.first, network.first_ages
+        super().__init__(*start, is_local=is_local, threads=threads)
 
     def learn(self) -> None:
         """Work out the edges of all reached locations."""
@@ -129,7 +131,7 @@ def explore_in_zones(initial: Configuration, inspect: Iterable[Inspect], options
         files = _Files(network, counted)
         files.begin()
         started -= files.seconds
-        search = _Learning(network)
+        search = _Learning(network, options.threads or cores())
         within = counted.limits if counted.limits.spill is None else replace(counted.limits, memory=None)
         try:
             with bounded(within, started):

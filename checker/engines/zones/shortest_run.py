@@ -1,7 +1,7 @@
 """The search for the first run of a number of steps to a goal that fewer steps don't reach.
 
-It has one clock, and proceeds depth first by groups of zones (see `kernel`), from the first step on. Where that takes
-long, searches in local time decide which of the begun steps lead to the goal.
+It has one clock, and proceeds depth first by groups of zones (see `zone_tables`), from the first step on. Where that
+takes long, searches in local time decide which of the begun steps lead to the goal.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -9,11 +9,23 @@ from collections.abc import Callable, Iterator, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from checker.engines.zones import kernel
+from checker.engines.zones import zone_groups
 from checker.engines.zones.difference_bounds import FREE
-from checker.engines.zones.kernel import AT, DEPTH, GROUP, GROUPS, LAYER, LONGEST, MISSED
 from checker.engines.zones.timed_automaton import EDGE, FIRST, TimedAutomaton
 from checker.engines.zones.zone_search import CHUNK, Search
+from checker.engines.zones.zone_tables import (
+    AT,
+    BEFORE,
+    BEGIN,
+    BY,
+    DEPTH,
+    FULL,
+    GROUP,
+    GROUPS,
+    LAYER,
+    LONGEST,
+    MISSED,
+)
 
 LeadsOn = Callable[["ShortestRun", int], bool]
 """Whether a group leads to the goal in the steps that are left."""
@@ -53,18 +65,17 @@ class ShortestRun(Search):
         After each number of zones, `patience`, `leads_on` is asked about the first group on the way of which it is
         unknown.
         """
-        sure, until = {0}, self.count + patience
+        sure, until, batch = {0}, self.count + patience, self._chunks.batch()
         while self.state[AT] >= 0:
             look()
             most = min(until, self.count + CHUNK)
-            why = kernel.advance_by_groups(
-                self.model, self.zones, self.state, self._largest, most, self._scratch
-            )
-            if why == kernel.FULL:
+            why = zone_groups.advance_by_groups(self.model, self.zones, self.state, self.largest, most, batch)
+            if why == FULL:
                 self._see(int(self.state[MISSED]))
+                batch = self._chunks.batch(int(self.state[MISSED]))
             elif self.state[DEPTH] > self.length:
                 yield int(self.state[AT])
-                kernel.turn_back(self.zones, self.state)
+                zone_groups.turn_back(self.zones, self.state)
             elif self.count >= until and self.state[AT] >= 0:
                 until = self.count + patience
                 if leads_on is not None:
@@ -80,22 +91,22 @@ class ShortestRun(Search):
             sure.add(way[depth])
         else:
             self.state[AT], self.state[DEPTH] = way[depth], depth + 1
-            kernel.turn_back(self.zones, self.state)
+            zone_groups.turn_back(self.zones, self.state)
 
     def _way(self, group: int) -> list[int]:
         """Return the groups on the way to a group, from the first one."""
         way = [group]
         while way[-1] > 0:
-            way.append(int(self.groups.room[GROUP * way[-1] + kernel.BEFORE]))
+            way.append(int(self.groups.room[GROUP * way[-1] + BEFORE]))
         return way[::-1]
 
     def steps_to(self, group: int) -> tuple[int, ...]:
         """Return the steps that lead to a group."""
-        return tuple(int(self.groups.room[GROUP * each + kernel.BY]) for each in self._way(group)[1:])
+        return tuple(int(self.groups.room[GROUP * each + BY]) for each in self._way(group)[1:])
 
     def zones_of(self, group: int) -> range:
         """Return the zones of a group."""
-        begins = self.groups.room[kernel.BEGIN : GROUP * int(self.state[GROUPS]) : GROUP]
+        begins = self.groups.room[BEGIN : GROUP * int(self.state[GROUPS]) : GROUP]
         end = int(begins[group + 1]) if group + 1 < len(begins) else self.count
         return range(int(begins[group]), end)
 

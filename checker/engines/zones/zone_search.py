@@ -7,9 +7,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from checker.engines.fast.compiled.arrays import Growing
-from checker.engines.zones import kernel
+from checker.engines.zones import keep_zones, make_zones
 from checker.engines.zones.difference_bounds import FREE
-from checker.engines.zones.kernel import (
+from checker.engines.zones.timed_automaton import EDGES, LOCATION, SIZE, UNKNOWN, TimedAutomaton
+from checker.engines.zones.zone_chunks import ZoneChunks
+from checker.engines.zones.zone_tables import (
     AT,
     COUNT,
     COVERED,
@@ -17,16 +19,22 @@ from checker.engines.zones.kernel import (
     DEPTH,
     FAR,
     FOUND,
+    FULL,
     GROUP,
     GROUPS,
     LAYER,
     LONGEST,
+    MISS,
     MISSED,
+    MOST_LATE,
     RANK,
     RANKED,
+    STATE,
     USED,
+    CompiledAutomaton,
+    ZoneBatch,
+    Zones,
 )
-from checker.engines.zones.timed_automaton import EDGES, LOCATION, SIZE, UNKNOWN, TimedAutomaton
 
 CHUNK = 1 << 14
 """Zones kept between two checks of the time."""
@@ -41,25 +49,36 @@ class Search:
     Attributes:
         automaton: The searched automaton.
         is_local: Whether each process has a date; else there is one clock.
-        state: The state of the loops.
+        threads: The most threads that it uses; the results are the same for every number.
+        model, zones, state: The tables of the loops, and their state.
+        largest: The most rows of a matrix.
         layers: The first zone of each layer.
     """
 
     def __init__(
-        self, automaton: TimedAutomaton, location: int, ages: Sequence[int], *, is_local: bool = False
+        self,
+        automaton: TimedAutomaton,
+        location: int,
+        ages: Sequence[int],
+        *,
+        is_local: bool = False,
+        threads: int = 1,
     ) -> None:
         self.automaton = automaton
         self.is_local = is_local
+        self.threads = threads
         self.begins, self.sums, self.dated_from = (Growing(np.int64) for _ in range(3))
         self.bounds, self.places, self.following, self.dated = (Growing(np.int32) for _ in range(4))
         self.depths = Growing(np.int32)
         self.heads, self.groups, self.ranks = (Growing(np.int32) for _ in range(3))
         self.rows, self.left = Growing(np.int32), Growing(np.int32)
         self.location, self.ages = location, tuple(ages)
-        self.state = np.zeros(kernel.STATE, np.int64)
+        self.state = np.zeros(STATE, np.int64)
+        self._chunks = ZoneChunks(self, threads)
         self._begin()
 
     def _begin(self) -> None:
+        self._chunks.drop()
         self.heads.size = self.ranks.size = 0
         self.state[:] = 0
         self.state[FOUND], self.state[LONGEST] = -1, FREE
@@ -70,16 +89,24 @@ class Search:
 
     def _enter_first(self) -> None:
         """Keep the zones with which the search begins."""
-        kernel.discover(self.model, self.zones, self.state, self.location)
+        row = int(self.automaton.rows.room[self.location])
+        self.rows.room[:RANK], self.ranks.room[row], self.state[RANKED] = (row, 0), 0, 1
         ages = np.array((0, *self.ages), np.int32)
         self._enter(self.location, ages[:, None] - ages[None, :])
 
     def _enter(self, location: int, ages: NDArray[np.int32]) -> None:
         """Keep a zone with which the search begins: all processes have one date."""
         which = np.array([*[0] * self.processes, *range(1, len(ages))])
-        self._scratch.e[: len(which), : len(which)] = ages[which[:, None], which]
+        batch = self._chunks.batch(1 << MOST_LATE)
+        batch.e[: len(which), : len(which)] = ages[which[:, None], which]
         model = self.model._replace(takes=np.arange(self.processes, dtype=np.int32))
-        kernel.enter(model, self.zones, self.state, location, 0, self.processes, self._scratch)
+        make_zones.enter(model, location, 0, self.processes, batch)
+        self._store(batch)
+
+    def _store(self, batch: ZoneBatch, until: int = int(FREE)) -> None:
+        """Store a batch, up to the row after which there are `until` zones."""
+        while keep_zones.store(self.model, self.zones, self.state, batch, until) == FULL:
+            self._see(int(self.state[MISSED]))
 
     # --- searching
 
@@ -89,16 +116,22 @@ class Search:
         The search ends early after the first layer with the goal.
         """
         until = self.count + zones
-        while self._goes_on and self.count < until:
-            why = kernel.advance(self.model, self.zones, self.state, self._largest, until, self._scratch)
-            if why == kernel.FULL:
-                self._see(int(self.state[MISSED]))
-            elif why == kernel.MISS:
-                self.learn()
-                self._see(1)
-            elif self.state[AT] == self.state[LAYER]:
-                self._settle()
+        with self._chunks:
+            while self._goes_on and self.count < until:
+                self._advance(until)
         return self._goes_on
+
+    def _advance(self, until: int) -> None:
+        part = self._chunks.first()
+        self._store(part.batch, until)
+        if not part.is_stored:
+            return
+        if self._chunks.stored() == MISS:
+            self._chunks.drop()
+            self.learn()
+            self._see(1)
+        elif self.state[AT] == self.state[LAYER]:
+            self._settle()
 
     @property
     def _goes_on(self) -> bool:
@@ -108,14 +141,19 @@ class Search:
         """Complete the layer under construction, and begin another one."""
         begin, end = int(self.state[LAYER]), self.count
         alive = np.flatnonzero(self.following.room[begin:end] != COVERED)
-        rows = self.automaton.rows.room[self.places.room[begin + alive]]
-        order = alive[np.argsort(self.ranks.room[rows], kind="stable")] + begin
-        kernel.arrange(self.model, self.zones, self.state, order)
+        ranks = self.ranks.room[self.automaton.rows.room[self.places.room[begin + alive]]]
+        by_rank = np.argsort(ranks, kind="stable")
+        keep_zones.arrange(self.model, self.zones, self.state, alive[by_rank] + begin)
+        self._ends = np.append(np.flatnonzero(np.diff(ranks[by_rank])) + begin + 1, self.count)
         self._deepest, self._met = self.deepest, int(self.state[RANKED])
         self.state[LAYER] = self.count
         if self.count > begin:
             self.state[DEPTH] += 1
             self.layers.append(self.count)
+
+    def end_of_row(self, zone: int) -> int:
+        """Return the end of the zones of a row that are expanded together: the first one that is not before a zone."""
+        return int(self._ends[min(int(np.searchsorted(self._ends, zone)), len(self._ends) - 1)])
 
     def learn(self) -> None:
         """Work out the edges of reached locations."""
@@ -138,6 +176,7 @@ class Search:
         Raises:
             OSError: There is no such folder, or no room in it.
         """
+        self._chunks.rest()
         for each in (
             self.begins,
             self.sums,
@@ -158,15 +197,16 @@ class Search:
 
     def _see(self, zones: int) -> None:
         """Update the loops' view of the automaton, with room for so many more zones."""
+        self._chunks.rest()
         automaton = self.automaton
         self.processes = automaton.processes if self.is_local else 1
-        self._largest = automaton.largest + self.processes - 1
+        self.largest = automaton.largest + self.processes - 1
         for each in (self.begins, self.sums, self.places, self.depths, self.following, self.dated_from):
             each.size = self.count
             each.reserve(zones + CHUNK)
         for each, used in ((self.bounds, USED), (self.dated, DATED)):
             each.size = int(self.state[used])
-            each.reserve((zones + 1) * self._largest**2)
+            each.reserve((zones + 1) * self.largest**2)
         self.groups.size = GROUP * int(self.state[GROUPS])
         self.groups.reserve(GROUP * (zones + CHUNK))
         missing = len(automaton) - len(self.heads)
@@ -187,16 +227,10 @@ class Search:
         clocks = (automaton.clocks, automaton.lower, automaton.upper, automaton.rows, self.left)
         takes = (ALONE, ALONE) if self.processes == 1 else (automaton.takes_from.room, automaton.takes.room)
         rooms = (*(each.room for each in (*parts, *clocks)), *takes)
-        self.model = kernel.CompiledAutomaton._make((*rooms, self.processes))
+        self.model = CompiledAutomaton._make((*rooms, self.processes))
         dated = (self.dated, self.dated_from)
         kept = (self.bounds, self.begins, *dated, self.sums, self.places, self.depths, self.following)
-        self.zones = kernel.Zones(
-            *(each.room for each in (*kept, self.heads, self.ranks, self.rows, self.groups))
-        )
-        shape = (self._largest, self._largest)
-        d, e, f = (np.zeros(shape, np.int32) for _ in range(3))
-        bounds, late = np.zeros((2, self._largest), np.int32), np.zeros(self.processes, np.int32)
-        self._scratch = kernel.Scratch(d, e, f, bounds, late)
+        self.zones = Zones(*(each.room for each in (*kept, self.heads, self.ranks, self.rows, self.groups)))
 
     # --- results
 

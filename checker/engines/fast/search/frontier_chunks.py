@@ -100,7 +100,7 @@ class FrontierChunks:
         self.expander = expander
         self.steps = steps
         self.store = expander.store
-        self.pipeline = self.store.readers = Pipeline(threads, steps.gather, steps.sift)
+        self.pipeline = self.store.readers = Pipeline[RowChunk](threads, steps.gather, steps.sift)
         self.pace, self.breadth = FEW, 1.0
         self.spare: list[Any] = []
         self.shape = expander.shape

@@ -1,4 +1,4 @@
-"""Chunks of rows that several threads expand ahead of the thread that stores them.
+"""Chunks of rows, or of zones, that several threads expand ahead of the thread that stores them.
 
 One thread stores the chunks in order, so rows get the same numbers as with a single thread. If no chunk is ready, this
 thread expands one itself, so no thread idles while there is work.
@@ -7,9 +7,9 @@ thread expands one itself, so no thread idles while there is work.
 from collections import deque
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import pairwise
-from typing import Any, NamedTuple
+from typing import Any, Generic, NamedTuple, TypeVar
 
 from checker.engines.fast.model.learned_model import (
     AT,
@@ -39,27 +39,39 @@ class ChunkMark(NamedTuple):
 
 
 @dataclass(slots=True, eq=False)
-class RowChunk:
-    """Rows that one thread expands.
+class Chunk:
+    """What one thread expands.
 
     Attributes:
-        begin, end: The range of rows.
-        epoch: The epoch at its start; its results are void if the epoch has changed since.
-        shape: The shape of its batch.
-        tables: The learned tables at its start.
-        batch: Its results.
-        state: Its copy of the loops' state.
+        begin, end: The range of rows or zones.
         expanding: The future of its expansion; None if no thread has begun it.
     """
 
     begin: int
     end: int
+    expanding: Future[None] | None = field(default=None, init=False)
+
+
+Part = TypeVar("Part", bound=Chunk)
+
+
+@dataclass(slots=True, eq=False)
+class RowChunk(Chunk):
+    """Rows that one thread expands.
+
+    Attributes:
+        epoch: The epoch at its start; its results are void if the epoch has changed since.
+        shape: The shape of its batch.
+        tables: The learned tables at its start.
+        batch: Its results.
+        state: Its copy of the loops' state.
+    """
+
     epoch: int
     shape: tuple[int, int, int]
     tables: Any
     batch: Any
     state: State
-    expanding: Future[None] | None = None
 
     @property
     def stop(self) -> ChunkMark:
@@ -72,8 +84,8 @@ class RowChunk:
         return (ChunkMark(*each) for each in rows.tolist())
 
 
-class Pipeline:
-    """The chunks ahead of the stored rows.
+class Pipeline(Generic[Part]):
+    """The chunks ahead of what is stored.
 
     Attributes:
         threads: The number of threads, including the one that stores.
@@ -84,15 +96,13 @@ class Pipeline:
         is_far_ahead: Whether more chunks were ready at the last `take` than can be stored at once.
     """
 
-    def __init__(
-        self, threads: int, expand: Callable[[RowChunk], None], sift: Callable[[RowChunk], None]
-    ) -> None:
+    def __init__(self, threads: int, expand: Callable[[Part], None], sift: Callable[[Part], None]) -> None:
         self.threads = threads
         self.expand = expand
         self.sift = sift
-        self.awaited: RowChunk | None = None
+        self.awaited: Part | None = None
         self.is_far_ahead = False
-        self.ahead: deque[RowChunk] = deque()
+        self.ahead: deque[Part] = deque()
         self.beside = ThreadPoolExecutor(threads - 1, "expanding") if threads > 1 else None
 
     @property
@@ -114,19 +124,22 @@ class Pipeline:
         """Return the greatest size of a chunk such that all threads get some of `rows` rows."""
         return rows if self.beside is None else max(rows // (SHARE * self.threads), WORTH)
 
-    def add(self, part: RowChunk) -> None:
+    def add(self, part: Part) -> None:
         """Add a chunk behind the others; another thread expands it, or this one at its turn."""
         self.ahead.append(part)
+        self._hand_over(part)
+
+    def _hand_over(self, part: Part) -> None:
         if self.beside is not None and part.end - part.begin >= WORTH:
             part.expanding = self.beside.submit(self._expand_beside, part)
 
-    def _expand_beside(self, part: RowChunk) -> None:
+    def _expand_beside(self, part: Part) -> None:
         """Expand a chunk in another thread, and sift it if storing lags behind."""
         self.expand(part)
         if self.is_far_ahead and part is not self.awaited:
             self.sift(part)
 
-    def take(self) -> RowChunk:
+    def take(self) -> Part:
         """Return the first chunk once it is expanded; meanwhile expand chunks that no thread has begun."""
         self.awaited = first = self.ahead.popleft()
         ready = sum(each.expanding is not None and each.expanding.done() for each in self.ahead)
@@ -152,6 +165,12 @@ class Pipeline:
         for part in self.ahead:
             if part.expanding is not None:
                 part.expanding.result()
+
+    def go_on(self) -> None:
+        """Let the other threads go on after a rest."""
+        for part in self.ahead:
+            if part.expanding is None:
+                self._hand_over(part)
 
     def drop(self) -> None:
         """Discard the chunks ahead."""
