@@ -73,7 +73,7 @@ MODULES = {
     },
     "the same part of another engine": {
         "explorer": "checker/engines/cluster checker/engines/fast checker/engines/zones",
-        "kernel": "checker/engines/cluster checker/engines/fast/store checker/engines/zones",
+        "kernel": "checker/engines/cluster checker/engines/fast/store",
     },
     "a command, its arguments, and the module that does its work": {
         "completion": "bigactors/commands bigactors/lsp",

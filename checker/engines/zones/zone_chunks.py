@@ -1,9 +1,7 @@
 """Chunks of a layer of zones, whose successors any thread makes ahead of the thread that stores them."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import Protocol
 
 from checker.engines.fast.search.pipeline import Chunk, Pipeline
 from checker.engines.zones import keep_zones, make_zones
@@ -16,18 +14,34 @@ from checker.engines.zones.zone_tables import (
     NEXT,
     STORED,
     WANTED,
+    CompiledAutomaton,
+    State,
     ZoneBatch,
+    Zones,
     new_batch,
 )
-
-if TYPE_CHECKING:
-    from checker.engines.zones.zone_search import Search
 
 BOUNDS = 1 << 18
 """The bounds of a batch, if they suffice for one row."""
 
-FEW = 1 << 6
-"""The zones of the first chunk: how many successors a zone has is not known yet."""
+
+class LayerSearch(Protocol):
+    """A search whose layers are divided into chunks.
+
+    Attributes:
+        model, zones, state: The tables of the loops, and their state.
+        largest: The most rows of a matrix.
+        processes: The number of processes with a date.
+    """
+
+    model: CompiledAutomaton
+    zones: Zones
+    state: State
+    largest: int
+    processes: int
+
+    def end_of_row(self, zone: int) -> int:
+        """Return the first end of a row's zones in the layer that is not before a zone."""
 
 
 @dataclass(slots=True, eq=False)
@@ -56,7 +70,7 @@ class ZoneChunks:
         zones: The zones for which a batch has room.
     """
 
-    def __init__(self, search: Search, threads: int) -> None:
+    def __init__(self, search: LayerSearch, threads: int) -> None:
         self.search = search
         self.pipeline = Pipeline[ZoneChunk](threads, self._make, self._sift)
         self.current: ZoneChunk | None = None

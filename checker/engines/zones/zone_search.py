@@ -64,6 +64,8 @@ class Search:
         is_local: bool = False,
         threads: int = 1,
     ) -> None:
+        self.model: CompiledAutomaton
+        self.zones: Zones
         self.automaton = automaton
         self.is_local = is_local
         self.threads = threads
@@ -152,7 +154,7 @@ class Search:
             self.layers.append(self.count)
 
     def end_of_row(self, zone: int) -> int:
-        """Return the end of the zones of a row that are expanded together: the first one that is not before a zone."""
+        """Return the first end of a row's zones in the layer that is not before a zone."""
         return int(self._ends[min(int(np.searchsorted(self._ends, zone)), len(self._ends) - 1)])
 
     def learn(self) -> None:
