@@ -13,7 +13,6 @@ from typing import Final
 from adapters.mavlink.constants import Cmd, MissionType
 from adapters.mavlink.download import MAX_ITEMS
 from adapters.mavlink.items import Items, OnboardItem, alike, is_home, same
-from adapters.mavlink.profiles import ARDUPILOT_DIALECT, Dialect
 from adapters.mavlink.telemetry import Telemetry
 from adapters.mavlink.zones import Zone, zones
 
@@ -84,7 +83,7 @@ def kept_zones(ours: Items, found: Items, known: Telemetry) -> tuple[Zone, ...]:
 
 def widens(known: Telemetry) -> bool:
     """Return whether another inclusion zone lets a vehicle leave ours."""
-    return _dialect(known).unites or bool(int(known.parameters.get("FENCE_OPTIONS", 0)) & UNION)
+    return known.dialect.unites or bool(int(known.parameters.get("FENCE_OPTIONS", 0)) & UNION)
 
 
 def landing(found: Items, known: Telemetry) -> Items:
@@ -95,7 +94,7 @@ def landing(found: Items, known: Telemetry) -> Items:
     if known.parameters.get("RTL_AUTOLAND") == 0.0:  # the vehicle cannot be armed with such a sequence
         return ()
     marked = next((at for at, item in enumerate(found) if item.command in _STARTS), None)
-    if marked is None and not _dialect(known).marks_landing:
+    if marked is None and not known.dialect.marks_landing:
         marked = next((at for at, item in enumerate(found) if item.command in _LANDINGS), None)
     return () if marked is None else found[marked:]
 
@@ -144,7 +143,3 @@ def _shifted(jump: OnboardItem, shift: int) -> OnboardItem:
 
 def _whole(number: float) -> int:
     return round(number) if abs(number) <= MAX_ITEMS else -1
-
-
-def _dialect(known: Telemetry) -> Dialect:
-    return ARDUPILOT_DIALECT if known.profile is None else known.profile.dialect

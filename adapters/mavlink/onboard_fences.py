@@ -52,7 +52,7 @@ class OwnFences:
 
 def own_fences(known: Telemetry, *, given: bool) -> OwnFences:
     """Return the fences that are on, or come on with a `given` polygon."""
-    told, dialect = known.parameters, _dialect(known)
+    told, dialect = known.parameters, known.dialect
     if dialect.fence_action:
         circle, ceiling = (told.get(name) or None for name in (dialect.fence_circle, dialect.fence_ceiling))
         return OwnFences(circle, ceiling, dialect) if _acts(known) else OwnFences(dialect=dialect)
@@ -71,18 +71,14 @@ def _configured(known: Telemetry) -> Fence:
     return Fence(int(known.parameters.get("FENCE_TYPE", 0)) & 15)
 
 
-def _dialect(known: Telemetry) -> Dialect:
-    return ARDUPILOT_DIALECT if known.profile is None else known.profile.dialect
-
-
 def _acts(known: Telemetry) -> bool:
     """Return whether a vehicle whose fences need no switch acts at them, as far as its parameters are known."""
-    return known.parameters.get(_dialect(known).fence_action, FenceAction.HOLD) > FenceAction.WARN
+    return known.parameters.get(known.dialect.fence_action, FenceAction.HOLD) > FenceAction.WARN
 
 
 def keeps_no_polygon(known: Telemetry) -> str | None:
     """Return the reason why a vehicle would not obey a given polygon, or None."""
-    action, told = _dialect(known).fence_action, known.parameters
+    action, told = known.dialect.fence_action, known.parameters
     if action:
         remedy = "set it to 2 (hold) or 3 (return)"
         return None if _acts(known) else _no_polygon(action, told.get(action, 0), remedy)
@@ -120,7 +116,7 @@ def zones_beside(fence: Geometry | None, known: Telemetry, on_board: OnBoard) ->
     found, ours = on_board.get(MissionType.FENCE, ()), () if fence is None else polygon_items(fence)
     if fence is not None:
         return kept_zones(ours, found, known)
-    dialect, told = _dialect(known), known.parameters
+    dialect, told = known.dialect, known.parameters
     by_itself = told.get("FENCE_ENABLE") or told.get("FENCE_AUTOENABLE")
     in_force = _acts(known) if dialect.fence_action else by_itself and Fence.POLYGON in _configured(known)
     return zones(found) if in_force else ()

@@ -29,7 +29,7 @@ from adapters.mavlink.constants import (
     Result,
 )
 from adapters.mavlink.message import MavlinkMessage, changed
-from adapters.mavlink.profiles import Profile, profile_of
+from adapters.mavlink.profiles import ARDUPILOT_DIALECT, Dialect, Profile, profile_of
 from adapters.mavlink.texts import Chunks, Joined, VehicleText, give_up, join
 from adapters.mavlink.vehicle_identities import Craft
 from adapters.plugin import Battery
@@ -158,6 +158,11 @@ class Telemetry:
     beat: float | None = None
     suspect: int | None = None
     placed: int | None = None
+
+    @property
+    def dialect(self) -> Dialect:
+        """The dialect of its firmware, ArduPilot's before its kind is known."""
+        return ARDUPILOT_DIALECT if self.profile is None else self.profile.dialect
 
     @property
     def flying(self) -> bool:
