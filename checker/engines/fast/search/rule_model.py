@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from checker.engines.fast.compiled.arrays import Growing
 from checker.engines.fast.model.columns import Packing
 from checker.engines.fast.model.decision_trees import RECORD
-from checker.engines.fast.model.learned_model import AT, CODE, NODE, TREE, UNSORTED, LearnedModel
+from checker.engines.fast.model.learned_model import AT, NODE, TREE, UNSORTED, LearnedModel
 from checker.engines.fast.model.learner import CodedSource, Learner, TransitionGroup
 from checker.engines.fast.store import kernel, repacking
 from checker.engines.fast.store.row_store import Making, RowStore
@@ -27,11 +27,8 @@ if TYPE_CHECKING:
     from checker.engines.fast.reduce.symmetry_tables import Exchanging
     from checker.engines.fast.store.canonicalise import Exchanges
 
-UNPLANTED = -1
-"""The stand-in for a node of a tree that had none."""
-
 Lesson = tuple[int, int, int, int]
-"""A journal entry: row, tree, node and code; with a row below 0, a part of an entry of the symmetry tables."""
+"""A journal entry: row, tree and two zeros; with a row below 0, a part of an entry of the symmetry tables."""
 
 
 class RuleModel:
@@ -140,20 +137,12 @@ class RuleModel:
             self.learn(int(self.store.state[AT]))
 
     def learn(self, row: int) -> None:
-        """Learn the entry at which the walk of a row ended."""
-        tree, node, code = (int(self.store.state[each]) for each in (TREE, NODE, CODE))
-        self.learned.append((row, tree, node, code))
-        self._learn(self.store.packing, self.store.rows.row(row), tree, node, code)
+        """Learn the path of a row in the tree at whose end its walk stopped."""
+        tree = int(self.store.state[TREE])
+        self.learned.append((row, tree, 0, 0))
+        self._learn(self.store.packing, self.store.rows.row(row), tree)
 
-    def _learn(self, where: Packing, words: NDArray[np.uint64], tree: int, node: int, code: int) -> None:
-        """Learn the path of a row in a tree; a new answer to a question of a node needs no rule.
-
-        Then only the windows of nodes change, which the loops read in place.
-        """
-        trees = self.learner.trees
-        if node >= 0 and trees.settle(node, code, self.learner.columns.all[trees.column_of(node)]):
-            self._snapshot = None
-            return
+    def _learn(self, where: Packing, words: NDArray[np.uint64], tree: int) -> None:
         self.learner.learn(tree, CodedSource(self.learner.columns, where, words.tolist()))
         self.see()
 
@@ -182,18 +171,17 @@ class RuleModel:
         self, where: Packing, rows: Rows, size: int, lesson: Lesson, others: Iterator[Lesson]
     ) -> None:
         """Learn again as another model did; raise ValueError if that model can't have learned it."""
-        row, tree, node, code = lesson
-        trees = self.learner.trees
+        row, tree, *_ = lesson
         if row < 0 and self.exchanging is not None:
             self.exchanging.learn_again(lesson, others)
             self.see()
             return
         if not 0 <= row < size:
             raise ValueError("it learned from a row that it does not have")
-        if not (0 <= tree < len(trees.root) and UNPLANTED <= node < len(trees.asks)):
-            raise ValueError("it learned an answer to a question of no rule")
+        if not 0 <= tree < len(self.learner.trees.root):
+            raise ValueError("it learned a path of no rule")
         try:
-            self._learn(where, rows.row(row), tree, node, code)
+            self._learn(where, rows.row(row), tree)
         except Exception as error:  # on a row that is no configuration, rules may fail in any way
             raise ValueError(f"a rule does not run on its rows: {type(error).__name__}: {error}") from error
 
@@ -209,6 +197,7 @@ class RuleModel:
                 follow()
 
     def _rebuild(self) -> None:
+        self.learner.settle()
         self._pack()
         alpha, groups = self._agents()
         if groups != self.groups:
