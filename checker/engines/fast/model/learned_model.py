@@ -158,6 +158,28 @@ def find_leaves(
     return flags
 
 
+@njit(cache=True)
+def find_unlearned(
+    m: LearnedModel, here: Words, asked_from: Ints, asked: Ints, found: Ints, state: State
+) -> int:
+    """Note the trees of a row's actors, and of the questions asked about them, that lack the row; return their number.
+
+    The trees of questions are in groups as those of agents.
+    """
+    group = code_at(here, 0, m.columns, m.alpha) if m.alpha >= 0 else np.int64(0)
+    count = np.int64(0)
+    for trees, begin, end in (
+        (m.agents, np.int64(m.agents_from[group]), np.int64(m.agents_from[group + 1])),
+        (m.clauses, np.int64(0), np.int64(len(m.clauses))),
+        (asked, np.int64(asked_from[group]), np.int64(asked_from[group + 1])),
+    ):
+        for k in range(begin, end):
+            if walk(here, 0, m.root[trees[k]], m.nodes, m.next, state) == 0:
+                found[count] = trees[k]
+                count += 1
+    return count
+
+
 @njit(cache=True, forceinline=True)
 def part_step(m: LearnedModel, source: Words, at: int, part: int, state: State) -> int:
     """Return the transition that holds the writes of a part; less than 0 if it is not learned yet."""
