@@ -18,7 +18,6 @@ from semantics.analysis.overapproximation import Overapproximation
 from semantics.analysis.traversal import reachable
 from semantics.analysis.value_flow import ValueFlow
 from semantics.behaviours.expressions import Literal
-from semantics.behaviours.reaction_rules import Reaction
 from semantics.behaviours.statements import ControlBy, Migrate, Observe, React, Send, Spawn, Statement
 from semantics.environment import Says
 from semantics.state.agents import Code, code_cell, host_cell
@@ -74,6 +73,10 @@ class Actors:
         bounds = Overapproximation(c)
         self.roles = ValueFlow(c.setting, bounds)
         self.footprints = Footprints(bounds, self.roles)
+        self._hosts = cache(self.roles.hosts)
+        # No slot of a control is ever settled.
+        self._of_control = cache(self._control)  # many statements have equal controls
+        self._of_reaction = lru_cache(maxsize=1 << 16)(self.footprints.control)
         self._forget()
         everything = joined([*map(self.clause, self.setting.environment), *self._lives(c)])
         self.footprints.settle(everything)
@@ -86,7 +89,6 @@ class Actors:
         self._of_request = lru_cache(maxsize=1 << 16)(self._request)
         self._of_statement = cache(self._statement)  # as many as agents times statements
         self._reached_by = lru_cache(maxsize=1 << 14)(self._reached)
-        self._of_reaction = lru_cache(maxsize=1 << 14)(self._reaction)
         self.clause = cache(self.footprints.clause)
 
     def _lives(self, c: Configuration) -> Iterator[SlotFootprint]:
@@ -209,14 +211,15 @@ class Actors:
         return rested_on | joined(self._of_statement(agent, each) for each in statements)
 
     def _request(self, agent: Name, request: Request) -> SlotFootprint:
-        return self._serve(agent, request, self.roles.hosts(agent))
+        return self._serve(agent, request, self._hosts(agent))
 
     def _serve(self, agent: Name, request: Request, hosts: Iterable[Name]) -> SlotFootprint:
         match request:
             case OBS(_, query):
                 return self.footprints.sense(agent, hosts, query) | self.footprints.telling(agent)
             case CTR(_, reaction) | FLY(_, reaction, _):
-                return self._of_reaction(agent, reaction)
+                does = self._of_reaction(agent, reaction)
+                return does | self.marks.made(agent, does)
             case SND(_, to, message):
                 there = to in self.roles.agents
                 return self.footprints.post(agent, hosts, to, Literal(message)) if there else NOTHING
@@ -231,13 +234,13 @@ class Actors:
 
     def _asked_by(self, agent: Name, number: int) -> SlotFootprint:
         statement: Statement = self.program.statements[number]
-        hosts = self.roles.hosts(agent)
+        hosts = self._hosts(agent)
         match statement:
             case Observe(query):
                 asked = self.roles.query(agent, query)
                 return self.footprints.sense(agent, hosts, asked) | self.footprints.telling(agent)
             case ControlBy():
-                return self._control(agent, statement)
+                return self._of_control(agent, statement) | self._marking(agent, statement)
             case Send(message, to):
                 receivers = self.roles.receivers(agent, to)
                 return joined(self.footprints.post(agent, hosts, each, message) for each in receivers)
@@ -251,10 +254,14 @@ class Actors:
             case _:
                 return NOTHING
 
-    def _reaction(self, agent: Name, reaction: Reaction) -> SlotFootprint:
-        does = self.footprints.control(agent, reaction)
-        return does | self.marks.made(agent, does)
-
     def _control(self, agent: Name, statement: ControlBy) -> SlotFootprint:
+        """Return the footprint of a control without its marks."""
         found = self.roles.reactions(agent, statement)
         return EVERYTHING if found is None else joined(self._of_reaction(agent, each) for each in found)
+
+    def _marking(self, agent: Name, statement: ControlBy) -> SlotFootprint:
+        """Bound the marks of a control."""
+        if not self.marks.monitored:
+            return NOTHING
+        does = (self._of_reaction(agent, each) for each in self.roles.reactions(agent, statement) or ())
+        return joined(self.marks.made(agent, each) for each in does)

@@ -62,6 +62,29 @@ def timings(draw: st.DrawFn, setting: Setting, tick: int = 1000) -> Timing:
 
 
 @st.composite
+def alike_timings(draw: st.DrawFn, setting: Setting) -> Timing:
+    """Yield timings, most of them the same for robots that are alike."""
+    timing = draw(timings(setting, 60_000))
+    driven = setting.driven()
+    motions, lasting = dict(timing.motions), dict(timing.endurances)
+    if draw(st.integers(0, 5)):
+        motions = dict.fromkeys(driven, Motion((40.0, 60.0)))
+        places = draw(st.sampled_from([(), ("dock0",), ("dock0", "room0")]))
+        one = Endurance(draw(st.integers(0, 6)), places, draw(st.integers(0, 2)))
+        lasting = dict.fromkeys(driven, one) if draw(st.booleans()) else {}
+    clauses = list(timing.clauses)
+    for number, clause in enumerate(setting.environment if draw(st.integers(0, 5)) else ()):
+        first = next(at for at, each in enumerate(setting.environment) if type(each) is type(clause))
+        clauses[number] = clauses[first]
+    return replace(
+        timing,
+        motions=tuple(sorted(motions.items())),
+        endurances=tuple(sorted(lasting.items())),
+        clauses=tuple(clauses),
+    )
+
+
+@st.composite
 def clause_times(draw: st.DrawFn, clause: object) -> ClauseTimes:
     """Yield the times of a clause of the environment, or none."""
     if draw(st.booleans()) and draw(st.booleans()):

@@ -8,11 +8,14 @@ from itertools import combinations, product
 import pytest
 from checked_missions import load, visited
 from hypothesis import given
+from hypothesis import strategies as st
 from scale import IS_WHOLE, examples, seeds
-from shipped import UNTIMED
+from shipped import TIMED, UNTIMED
 from swarms import swarms
+from timed_missions import alike_timings, with_timing
+from timed_reports import assert_alike
 
-from checker import Engine, Limits, explore
+from checker import Engine, Limits, check, explore
 from checker.engines.fast.model.interchangeable import Likeness
 from checker.engines.fast.model.rule_cache import Exchange, NoImage
 from checker.recording.access_recording import ColumnQuestion
@@ -20,10 +23,13 @@ from checker.reduction.configuration_renaming import Renaming
 from semantics.behaviours.expressions import Fault
 from semantics.behaviours.observations import Nodes, agent_key
 from semantics.behaviours.values import Text, show
+from semantics.properties.kinds import PropertyKind
+from semantics.properties.property import Property
 from semantics.state.cell_values import is_
 from semantics.state.configuration import Label
 from semantics.state.requests import OBS
 from semantics.state.signature import REGION
+from semantics.timing.timing import Endurance, Motion, Timing
 from specs.elaboration import load_mission
 
 FLEET = """mission fleet
@@ -54,10 +60,21 @@ def both(initial, most):
         patched.setattr(Likeness, "agents", {})
         apart = explore(initial, **options)
     assert visited(shared) == visited(apart)
+    assert zones(shared) == zones(apart)
     return shared, apart
 
 
-@pytest.mark.parametrize("name", UNTIMED)
+def zones(found):
+    """The number of zones in a mission with times."""
+    return None if found.times is None else found.times.search.count
+
+
+def runs_of(found):
+    """How often rules were run, in a mission with times."""
+    return found.times.network.learner.runs
+
+
+@pytest.mark.parametrize("name", [*UNTIMED, *TIMED])
 def test_a_mission_that_ships_is_explored_as_if_nothing_were_shared(name):
     both(load_mission(name).initial, 800 if IS_WHOLE else 400)
 
@@ -66,6 +83,44 @@ def test_a_mission_that_ships_is_explored_as_if_nothing_were_shared(name):
 @examples(40 if IS_WHOLE else 18)
 def test_generated_swarms_are_explored_as_if_nothing_were_shared(text):
     both(load(text, "").initial, 400)
+
+
+@given(data=st.data(), text=swarms())
+@examples(40 if IS_WHOLE else 12)
+def test_generated_swarms_with_times_are_explored_as_if_nothing_were_shared(data, text):
+    initial = load(text, "").initial
+    both(with_timing(initial, data.draw(alike_timings(initial.setting))), 200)
+
+
+def timed_fleet(speeds, lasting):
+    """A fleet with the speeds of its robots, and with the ticks for which each can fly."""
+    names = [f"robot{n}" for n in range(len(speeds))]
+    timing = Timing(
+        60_000,
+        tuple((name, Motion((speed, speed))) for name, speed in zip(names, speeds, strict=True)),
+        tuple((name, Endurance(each, ("room0",), 1)) for name, each in zip(names, lasting, strict=True)),
+    )
+    return with_timing(fleet(len(speeds), "control timed"), timing)
+
+
+@pytest.mark.parametrize(
+    ("speeds", "lasting", "alike"),
+    [((40, 40, 40), (9, 9, 9), 3), ((40, 50, 40), (9, 9, 9), 2), ((40, 40, 40), (9, 9, 8), 2)],
+)
+def test_vehicles_with_equal_times_share_lessons_and_others_do_not(speeds, lasting, alike):
+    initial = timed_fleet(speeds, lasting)
+    likeness = Likeness(initial.setting, initial.state, frozenset(), frozenset())
+    assert len(likeness.agents) == alike
+    shared, apart = both(initial, 300)
+    assert runs_of(shared) < runs_of(apart)
+
+
+@pytest.mark.parametrize(("speeds", "lasting"), [((40, 40), (3, 3)), ((40, 90), (3, 3)), ((40, 40), (3, 2))])
+def test_a_fleet_with_times_is_decided_as_by_the_reference(speeds, lasting):
+    initial = timed_fleet(speeds, lasting)
+    asked = [Property(PropertyKind.ENDURANCE, "endurance"), Property(PropertyKind.DEADLOCK_FREEDOM, "stuck")]
+    reports = [check(initial, asked, engine=each, times=True) for each in (Engine.REFERENCE, Engine.FAST)]
+    assert_alike(*(replace(each, seconds=0.0) for each in reports))
 
 
 def test_a_fleet_three_times_as_large_takes_no_more_runs_of_rules():

@@ -6,7 +6,7 @@ column that outgrows its bits requires a new packing.
 """
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -38,9 +38,15 @@ Place = tuple[Cell, int, Name] | tuple[Cell]
 
 @dataclass(slots=True)
 class ColumnGrowth:
-    """A counter of new columns and of columns that need one more bit."""
+    """The growth of columns.
+
+    Attributes:
+        times: The number of new columns and of columns that need one more bit.
+        valued: The cells with new values since someone last cleared them.
+    """
 
     times: int = 0
+    valued: dict[Cell, None] = field(default_factory=dict)
 
 
 class Column:
@@ -65,6 +71,7 @@ class Column:
         if known is None:
             known = self.codes[value] = len(self.values)
             self.values.append(value)
+            self.growth.valued[self.place[0]] = None
             if known & (known - 1) == 0:  # the previous codes need one bit fewer
                 self.growth.times += 1
         return known
@@ -80,7 +87,7 @@ class Columns:
     Attributes:
         mobile: The names for which an observation has columns.
         apart: The names for which the parts of a conclusion are learned separately: the mobile names and agents.
-        growth: The number of changes to the columns' widths.
+        growth: The growth of all columns.
     """
 
     def __init__(self, mobile: frozenset[Name], agents: frozenset[Name] = frozenset()) -> None:

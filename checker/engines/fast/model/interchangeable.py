@@ -60,8 +60,6 @@ class Likeness:
     @cached_property
     def agents(self) -> dict[Name, tuple[Name, Exchange]]:
         """For each agent that is interchangeable with another, the first one and the exchange to it."""
-        if self.setting.timing is not None:  # it gives speeds of vehicles by name
-            return {}
         many = Counter(first for first, _ in self._firsts.values())
         return {agent: found for agent, found in self._firsts.items() if many[found[0]] > 1}
 
@@ -100,8 +98,6 @@ class Likeness:
 
         A name that the transition's own questions in `scope` mention is interchangeable with none.
         """
-        if self.setting.timing is not None:  # it gives speeds of vehicles by name
-            return {}
         try:
             mentioned, taken = _mentioned(scope), self._taken(scope)
         except NoImage:

@@ -76,14 +76,15 @@ class SuccessorBatch(NamedTuple):
     lately: Ints
 
 
-STATE = 15
-AT, SIZE, LIMIT, WORDS, KEPT, GATHERED, TREE, NODE, CODE, CUT, CROWDS, EXPANDED = range(12)
-SIFTED, PUT_OFF, SEEN = range(12, STATE)
+STATE = 14
+AT, SIZE, LIMIT, WORDS, KEPT, GATHERED, TREE, NODE, CUT, CROWDS, EXPANDED, SIFTED, PUT_OFF, SEEN = range(
+    STATE
+)
 """The entries of the loops' state.
 
 AT: the next row. SIZE, LIMIT: the number of rows, and its limit. WORDS, KEPT: the words of a row, and of its stored
-form. GATHERED: the number of gathered successors. TREE, NODE, CODE: the place where a tree ended. CUT: whether the
-limit left rows out. CROWDS: the number of crowded rows. EXPANDED: the number of rows with all successors stored.
+form. GATHERED: the number of gathered successors. TREE, NODE: the place where a tree ended. CUT: whether the limit left
+rows out. CROWDS: the number of crowded rows. EXPANDED: the number of rows with all successors stored.
 SIFTED: the number of successors that may be new. PUT_OFF: the number of deferred rows. SEEN: the number of rows that
 may be looked up.
 """
@@ -123,7 +124,6 @@ def walk(words: Words, at: int, start: int, nodes: Words, leads: Ints, state: St
             reference = np.int64(leads[nodes[record + _BASE] + inside])
     if reference == 0:
         state[NODE] = -1 if start == 0 else np.int64(record // _RECORD)
-        state[CODE] = np.int64(code)
     return reference
 
 
@@ -156,6 +156,28 @@ def find_leaves(
         leaves[k] = -reference - 1
         flags |= m.leaves[LEAF * (-reference - 1) + FLAGS]
     return flags
+
+
+@njit(cache=True)
+def find_unlearned(
+    m: LearnedModel, here: Words, asked_from: Ints, asked: Ints, found: Ints, state: State
+) -> int:
+    """Note the trees of a row's actors, and of the questions asked about them, that lack the row; return their number.
+
+    The trees of questions are in groups as those of agents.
+    """
+    group = code_at(here, 0, m.columns, m.alpha) if m.alpha >= 0 else np.int64(0)
+    count = np.int64(0)
+    for trees, begin, end in (
+        (m.agents, np.int64(m.agents_from[group]), np.int64(m.agents_from[group + 1])),
+        (m.clauses, np.int64(0), np.int64(len(m.clauses))),
+        (asked, np.int64(asked_from[group]), np.int64(asked_from[group + 1])),
+    ):
+        for k in range(begin, end):
+            if walk(here, 0, m.root[trees[k]], m.nodes, m.next, state) == 0:
+                found[count] = trees[k]
+                count += 1
+    return count
 
 
 @njit(cache=True, forceinline=True)

@@ -227,6 +227,11 @@ class Learner:
             return False
         return True
 
+    def settle(self) -> None:
+        """Answer the questions of all trees for new values of their columns."""
+        self.trees.settle(self.columns.growth.valued)
+        self.columns.growth.valued.clear()
+
     def relearn(self, news: Relearn) -> None:
         """Discard the trees that assumed this cell to be constant or shallower, for all interchangeable cells."""
         self.sharing.forgotten += 1
@@ -242,6 +247,7 @@ class Learner:
         """Discard all trees."""
         for tree in range(len(self.owners)):
             self.trees.forget(tree)
+        self.trees.questioned.clear()
 
     def forget_those(self, trees: dict[Cell, set[int]], cell: Cell) -> None:
         """Discard the trees recorded for a cell."""

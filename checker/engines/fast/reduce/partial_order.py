@@ -8,7 +8,6 @@ from itertools import islice
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from checker.engines.fast.compiled.arrays import Growing
 from checker.engines.fast.compiled.bits import WORD
@@ -61,7 +60,7 @@ class Choosing:
         self.ample = ample
         self.agents: dict[Name, int] = {}
         self.groups: list[tuple[Name, ...]] = []
-        self.trees: tuple[NDArray[np.int32], ...] = ()
+        self.trees = (np.zeros(1, np.int32), np.zeros(0, np.int32))
         actors = ample.actors
         self.clauses = [
             learner.question(_of_clause(ample, number)) for number in range(len(actors.setting.environment))

@@ -145,6 +145,7 @@ class Expander:
             self.shape, self.batch, self.state[GATHERED] = shape, self.new_batch(self.successors), 0
         if self.choosing is not None:
             self.choosing.see(self.model.groups, self.store.packing, self.successors)
+            self.model.asked = self.choosing.trees
 
     def new_batch(self, successors: int | None = None, later: int = 0) -> SuccessorBatch:
         """Return an empty batch for `successors` successors, with room for `later` deferred rows."""

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from checker.engines.fast.compiled.arrays import Growing
 from checker.engines.fast.model.columns import Packing
 from checker.engines.fast.model.decision_trees import RECORD
-from checker.engines.fast.model.learned_model import AT, CODE, NODE, TREE, UNSORTED, LearnedModel
+from checker.engines.fast.model.learned_model import AT, NODE, TREE, UNSORTED, LearnedModel, find_unlearned
 from checker.engines.fast.model.learner import CodedSource, Learner, TransitionGroup
 from checker.engines.fast.store import kernel, repacking
 from checker.engines.fast.store.row_store import Making, RowStore
@@ -27,11 +27,11 @@ if TYPE_CHECKING:
     from checker.engines.fast.reduce.symmetry_tables import Exchanging
     from checker.engines.fast.store.canonicalise import Exchanges
 
-UNPLANTED = -1
-"""The stand-in for a node of a tree that had none."""
-
 Lesson = tuple[int, int, int, int]
-"""A journal entry: row, tree, node and code; with a row below 0, a part of an entry of the symmetry tables."""
+"""A journal entry: row, tree, whether the next one was learned at the same stop, and 0.
+
+With a row below 0, it is a part of an entry of the symmetry tables.
+"""
 
 
 class RuleModel:
@@ -47,6 +47,7 @@ class RuleModel:
         loops: The tables in the form that the loops read.
         learned: The lessons so far, in order.
         groups: The agents for each value of the cell that names them.
+        asked: The trees of questions that are asked of each row: their bounds for each of the groups, and the trees.
         actors: The greatest number of actors of a configuration so far: two for each agent, one for each clause.
         followers: Called after each rebuilding of the tables; they may ask new questions.
     """
@@ -64,6 +65,7 @@ class RuleModel:
         ]
         self.actors = len(self.clauses)
         self.groups: list[tuple[Name, ...]] = []
+        self.asked = (np.zeros(1, np.int32), np.zeros(0, np.int32))
         self._trees: tuple[NDArray[np.int32], ...] = ()
         self._masks = Growing(np.uint64, shared=True)
         self._located = 0
@@ -140,22 +142,23 @@ class RuleModel:
             self.learn(int(self.store.state[AT]))
 
     def learn(self, row: int) -> None:
-        """Learn the entry at which the walk of a row ended."""
-        tree, node, code = (int(self.store.state[each]) for each in (TREE, NODE, CODE))
-        self.learned.append((row, tree, node, code))
-        self._learn(self.store.packing, self.store.rows.row(row), tree, node, code)
-
-    def _learn(self, where: Packing, words: NDArray[np.uint64], tree: int, node: int, code: int) -> None:
-        """Learn the path of a row in a tree; a new answer to a question of a node needs no rule.
-
-        Then only the windows of nodes change, which the loops read in place.
-        """
-        trees = self.learner.trees
-        if node >= 0 and trees.settle(node, code, self.learner.columns.all[trees.column_of(node)]):
-            self._snapshot = None
-            return
-        self.learner.learn(tree, CodedSource(self.learner.columns, where, words.tolist()))
+        """Learn the path of a row in the tree at whose end its walk stopped, and in its other actors' trees."""
+        words = self.store.rows.row(row)
+        trees = list(dict.fromkeys([int(self.store.state[TREE]), *self._unlearned(words)]))
+        for left, tree in zip(range(len(trees))[::-1], trees, strict=True):
+            self.learned.append((row, tree, int(left > 0), 0))
+            self._learn(self.store.packing, words, tree)
         self.see()
+
+    def _unlearned(self, words: NDArray[np.uint64]) -> list[int]:
+        """Return the trees of a row's actors, and of the questions asked about them, that lack the row."""
+        found = np.zeros(len(self.loops.agents) + len(self.clauses) + len(self.asked[1]), np.int32)
+        count = find_unlearned(self.loops, words, *self.asked, found, self.store.state.copy())
+        trees: list[int] = found[:count].tolist()
+        return trees
+
+    def _learn(self, where: Packing, words: NDArray[np.uint64], tree: int) -> None:
+        self.learner.learn(tree, CodedSource(self.learner.columns, where, words.tolist()))
 
     def forget(self) -> None:
         """Discard everything learned but the values of columns; call `see` afterwards."""
@@ -182,18 +185,19 @@ class RuleModel:
         self, where: Packing, rows: Rows, size: int, lesson: Lesson, others: Iterator[Lesson]
     ) -> None:
         """Learn again as another model did; raise ValueError if that model can't have learned it."""
-        row, tree, node, code = lesson
-        trees = self.learner.trees
+        row, tree, is_followed, _ = lesson
         if row < 0 and self.exchanging is not None:
             self.exchanging.learn_again(lesson, others)
             self.see()
             return
         if not 0 <= row < size:
             raise ValueError("it learned from a row that it does not have")
-        if not (0 <= tree < len(trees.root) and UNPLANTED <= node < len(trees.asks)):
-            raise ValueError("it learned an answer to a question of no rule")
+        if not 0 <= tree < len(self.learner.trees.root):
+            raise ValueError("it learned a path of no rule")
         try:
-            self._learn(where, rows.row(row), tree, node, code)
+            self._learn(where, rows.row(row), tree)
+            if not is_followed:
+                self.see()
         except Exception as error:  # on a row that is no configuration, rules may fail in any way
             raise ValueError(f"a rule does not run on its rows: {type(error).__name__}: {error}") from error
 
@@ -209,11 +213,13 @@ class RuleModel:
                 follow()
 
     def _rebuild(self) -> None:
+        self.learner.settle()
         self._pack()
         alpha, groups = self._agents()
         if groups != self.groups:
             self.groups = list(groups)
             self._trees = self._trees_of(groups)
+            self.asked = (np.zeros(len(groups) + 1, np.int32), np.zeros(0, np.int32))
         trees, leaves = self.learner.trees, self.learner.leaves
         self._locate()
         self._make_masks()

@@ -286,7 +286,7 @@ def test_without_memory_several_threads_stop_and_say_so(monkeypatch, threads):
 
     def taken():
         asked.append(True)
-        return 2 if len(asked) > 200 else 0
+        return 2 if len(asked) > 100 else 0
 
     monkeypatch.setattr(checker.limits, "memory_taken", taken)
     found = explore(start("rendezvous"), engine=Engine.FAST, threads=threads, limits=Limits(memory=1))

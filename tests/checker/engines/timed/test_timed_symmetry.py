@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from replaying import assert_replays
 from scale import IS_WHOLE, examples
 from swarms import AROUND, LISTENS, LOOKS, ORBITS, mission, swarm, swarms
-from timed_missions import timings, with_timing
+from timed_missions import alike_timings, with_timing
 from timed_reports import assert_alike
 
 from checker import Engine, Keeping, Limits, Outcome, RefusedError, check, explore
@@ -56,29 +56,6 @@ def within(bound, formula, then=None):
 
 def when(formula, name="time"):
     return Property(PropertyKind.TIME, name, formula)
-
-
-@st.composite
-def alike_timings(draw, setting):
-    """Yield timings, most of them the same for robots that are alike."""
-    timing = draw(timings(setting, 60_000))
-    driven = setting.driven()
-    motions, lasting = dict(timing.motions), dict(timing.endurances)
-    if draw(st.integers(0, 5)):
-        motions = dict.fromkeys(driven, Motion((40.0, 60.0)))
-        places = draw(st.sampled_from([(), ("dock0",), ("dock0", "room0")]))
-        one = Endurance(draw(st.integers(0, 6)), places, draw(st.integers(0, 2)))
-        lasting = dict.fromkeys(driven, one) if draw(st.booleans()) else {}
-    clauses = list(timing.clauses)
-    for number, clause in enumerate(setting.environment if draw(st.integers(0, 5)) else ()):
-        first = next(at for at, each in enumerate(setting.environment) if type(each) is type(clause))
-        clauses[number] = clauses[first]
-    return replace(
-        timing,
-        motions=tuple(sorted(motions.items())),
-        endurances=tuple(sorted(lasting.items())),
-        clauses=tuple(clauses),
-    )
 
 
 FORMULAS = (
