@@ -1,0 +1,148 @@
+"""How long a flight may take, beside the distances of a meridian: places, ways, circles, bands, and where who is."""
+
+from math import ceil, floor, pi
+
+import pytest
+from checked_missions import load
+from pyproj import Geod
+
+from checker import explore
+from semantics.state.requests import FLY
+from semantics.successors import expand
+from semantics.timing.flight_times import aim, interval_of_flight
+from semantics.timing.intervals import ANY_TIME, Interval
+
+WORLD = """
+signature {
+  kind Place contains UAV, Ship, Buoy, Pad
+  kind UAV driven
+  kind Ship driven carries UAV, Pad
+  kind Pad carries UAV
+  kind Buoy carries UAV
+}
+world {
+  near0: Place = circle (37.02, -8.7) radius 300 m
+  far0: Place = circle (37.05, -8.7) radius 300 m
+  high0: Place = circle (37.035, -8.7) radius 300 m altitude 500 m to 700 m
+  low0: Place = circle (37.04, -8.7) radius 200 m altitude 10 m to 20 m
+  uav0: UAV = point (37.0, -8.7) altitude 80 m to 120 m
+  uav1: UAV = point (37.01, -8.7)
+  ship0: Ship = point (37.06, -8.7)
+  pad0: Pad carried by ship0
+  buoy0: Buoy = point (37.05, -8.7)
+}
+control timed
+scheduler fcfs
+"""
+LATITUDES = {
+    "near": 37.02, "far": 37.05, "high": 37.035, "uav0": 37.0, "uav1": 37.01, "ship": 37.06
+}  # fmt: skip
+SPEEDS = "flies at 10 m/s to 20 m/s"
+
+
+def metres(one, other):
+    return Geod(ellps="WGS84").inv(-8.7, LATITUDES[one], -8.7, LATITUDES[other])[2]
+
+
+def flights(text, lines):
+    """Return the intervals of the last flight of a, as they change; whoever else flies arrives first."""
+    c = load(f"{text}\ntiming {{\n{lines}\n}}\n", WORLD).initial
+    found = []
+    while steps := expand(c).by_agents:
+        c = min(steps, key=lambda step: step.label.rule == "commit" and step.label.agent == "a").target
+        requests = (each.request for each in c.eta.of("a"))
+        found += [interval_of_flight(c, each) for each in requests if isinstance(each, FLY)]
+    return found
+
+
+def of_flights(text, lines, ask=interval_of_flight):
+    """Return what is ever known of the flights of a, whatever else happens."""
+    found = explore(load(f"{text}\ntiming {{\n{lines}\n}}\n", WORLD).initial).configurations
+    pending = ((c, each.request) for c in found for each in c.eta.of("a"))
+    return {ask(c, request) for c, request in pending if isinstance(request, FLY)}
+
+
+def going(*controls):
+    does = " ".join(f"control({each})" for each in controls)
+    return f"BigActor a hosted_at uav0 with_behavior {{ {does} }}\n"
+
+
+NEAR, FAR, HIGH = metres("uav0", "near"), metres("uav0", "far"), metres("uav0", "high")
+BETWEEN, DOWN, SHIP = metres("near", "far"), metres("high", "far"), metres("uav0", "ship")
+BOTH = "rule both(u: UAV) { u || uav1 || near0 -> near0.(u | uav1) }\n"
+ALONE = "rule alone(u: UAV) { u || near0 -> near0.u }\n"
+SAILS = "BigActor b hosted_at ship0 with_behavior { control(MOVE_HOST_TO far0) }\n"
+FLIGHTS = {
+    "to a place": (going("MOVE_HOST_TO near0"), "", NEAR - 300, NEAR),
+    "by way of another, to which it may have to come back": (
+        going("MOVE_HOST_TO far0 VIA near0"), "", FAR - 900, 2 * BETWEEN
+    ),
+    "with a circle at each point": (
+        going("MOVE_HOST_TO far0 VIA near0"), ", circles 80 m", FAR - 900, 2 * BETWEEN + 2 * pi * 160
+    ),
+    "from anywhere in a place": (
+        going("MOVE_HOST_TO near0", "MOVE_HOST_TO far0"), "", BETWEEN - 600, BETWEEN + 300
+    ),
+    "from a circle that leaves the place": (
+        going("MOVE_HOST_TO near0", "MOVE_HOST_TO far0"), ", circles 80 m",
+        BETWEEN - 760, BETWEEN + 460 + pi * 160,
+    ),
+    "to a ship that stays": (going("MOVE_HOST_TO ship0"), "", SHIP, SHIP),
+    "to a ship that is somewhere in a place": (going("MOVE_HOST_TO ship0") + SAILS, "", FAR - 300, FAR + 300),
+    "to what is aboard of it": (going("MOVE_HOST_TO pad0") + SAILS, "", FAR - 300, FAR + 300),
+    "through a band, which takes longer than the way up": (
+        going("MOVE_HOST_TO far0 VIA high0"), ", climbs at 2 m/s to 5 m/s",
+        FAR - 900, HIGH + DOWN + 620 / 2 * 10,
+    ),
+    "through two bands, which takes less than the way up and down": (
+        going("MOVE_HOST_TO far0 VIA high0, low0"), ", climbs at 0.5 m/s to 0.6 m/s",
+        (380 + 480) / 0.6 * 20, HIGH + DOWN + (620 + 690) / 0.5 * 10,
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(("text", "more", "least", "most"), FLIGHTS.values(), ids=FLIGHTS)
+def test_a_flight_takes_the_shortest_way_at_most_speed_to_the_longest_at_least_speed(text, more, least, most):
+    found = flights(text, f"UAV {SPEEDS}{more}")[-1]
+    assert (found.lo, found.hi) == (floor(least / 20), ceil(most / 10))
+
+
+def test_of_several_that_fly_by_one_request_the_slowest_counts():
+    text = f"{BOTH}{going('both(uav0)')}"
+    (far,), (near,), (both,) = (set(flights(text, f"{each} {SPEEDS}")) for each in ("uav0", "uav1", "UAV"))
+    assert far == Interval(both.lo)
+    assert near == Interval(floor((metres("uav1", "near") - 300) / 20))
+    assert both == Interval(floor((NEAR - 300) / 20), ceil(NEAR / 10))
+
+
+def test_a_flight_need_not_end_while_its_destination_is_in_transit_or_has_no_room():
+    for control in ("MOVE_HOST_TO ship0", "MOVE_HOST_TO near0 VIA ship0"):
+        assert None in {each.hi for each in flights(going(control) + SAILS, f"UAV {SPEEDS}")}
+    full = "BigActor d hosted_at uav1 with_behavior { control(MOVE_HOST_TO near0) }"
+    ends = {each.hi is None for each in of_flights(f"{ALONE}{going('alone(uav0)')}{full}", f"UAV {SPEEDS}")}
+    assert ends == {False, True}
+
+
+def test_what_is_not_said_is_not_assumed_of_a_flight():
+    (up,) = set(flights(going("MOVE_HOST_TO far0 VIA high0"), f"UAV {SPEEDS}"))
+    assert up == Interval(floor((FAR - 900) / 20))
+    assert set(flights(going("MOVE_HOST_TO near0"), "agents react within 1 s")) == {ANY_TIME}
+
+
+UNKNOWN = {
+    "to what drifts within a place": ("MOVE_HOST_TO buoy0", "buoy0 drifts within far0", 1),
+    "by way of what vanishes": ("MOVE_HOST_TO near0 VIA high0", "high0 vanishes", 2),
+}
+
+
+@pytest.mark.parametrize(("control", "event", "different"), UNKNOWN.values(), ids=UNKNOWN)
+def test_of_a_flight_nothing_is_known_while_it_is_unknown_where_it_leads(control, event, different):
+    found = of_flights(f"{going(control)}environment {{ {event} }}", f"UAV {SPEEDS}")
+    assert ANY_TIME in found
+    assert len(found) == different
+
+
+def test_a_flight_has_another_aim_when_a_place_on_it_has_another_shape_around_one_middle():
+    for control in ("MOVE_HOST_TO near0", "MOVE_HOST_TO far0 VIA near0"):
+        drifts = "near0 drifts among circle (37.02, -8.7) radius 200 m"
+        assert len(of_flights(f"{going(control)}environment {{ {drifts} }}", f"UAV {SPEEDS}", aim)) == 2
