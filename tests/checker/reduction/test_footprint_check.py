@@ -25,6 +25,7 @@ from semantics.properties import propositions
 from semantics.properties.propositions import Ended, HasPending, HostedAt, Inside, Known, Waiting
 from semantics.races.monitor import monitored
 from semantics.state.requests import CTR
+from semantics.successors import expand
 from specs import MissionError
 from specs.elaboration import load_mission
 
@@ -110,6 +111,26 @@ OF_B = [Waiting("b"), HostedAt("b", "uav0"), HasPending("b"), Ended("b"), Known(
 )
 def test_nothing_lies_outside_of(text, formulas, world):
     assert outside_of(start(text, world), formulas, most=400, count=60) == set()
+
+
+LOOKS_TWICE = """
+BigActor a hosted_at uav0 with_behavior {
+  observe(CHILDREN(gate0)) observe(LINKED_TO(uav0))
+  react { case o if uav1 in o => skip } control(MOVE_HOST_TO gate0) send("in", b)
+  react { case p => control(HAND uav0 TO gcs0) }
+}
+BigActor b hosted_at gcs0 with_behavior { react { case "in" => control(MOVE uav0 TO south0) } }
+"""
+
+
+@pytest.mark.parametrize("variation", ["", "scheduler unordered", "control timed"])
+def test_nothing_lies_outside_of_a_search_that_begins_in_the_middle(variation):
+    found = explore(start(f"{LOOKS_TWICE}{variation}\n")).configurations
+    for number in sample(len(found), 40):
+        begin = found[number]
+        ample = Ample(begin, OF_B)
+        for c in (begin, *(step.target for step in expand(begin).transitions)):
+            assert set(outside(ample, c)) == set()
 
 
 BUSY = """
