@@ -93,6 +93,26 @@ REFUSED = {
         {"body": LOOKS, "rest": "environment { robot1 drifts among room0 }"},
         "since the environment treats them differently",
     ),
+    "told more often": (
+        {"body": LOOKS, "rest": 'environment { says "go" to r0 says "go" to r1 at most 2 times }'},
+        "since the environment treats them differently",
+    ),
+    "sure to arrive": (
+        {"body": LOOKS, "rest": "environment { robot1 arrives }\ncontrol timed"},
+        "since of one flights arrive, of the other not",
+    ),
+    "missed": (
+        {"body": LOOKS, "rest": "environment { observe may miss robot1 }"},
+        "since an observation may miss one, and never the other",
+    ),
+    "of another kind": (
+        {"body": "skip", "robots": 1, "rest": "BigActor s hosted_at gcs0 with_behavior { visit() }"},
+        "'robot0' and 'gcs0' are not of one kind",
+    ),
+    "the name of a channel": (
+        {"body": LOOKS, "places": ["point (37.00, -8.70) linked net:robot0"] * 2},
+        "since a channel or a rule is named with 'robot0'",
+    ),
 }
 
 
@@ -116,8 +136,8 @@ def test_it_is_refused_for_what_is_asked_of_one_or_remembered_of_each():
 
 def test_containers_are_not_exchanged_since_the_smallest_is_found_by_name():
     text = swarm(LOOKS, robots=1).replace("kind Station\n", "kind Station\n  kind Raft contains Robot\n")
-    rafts = "".join(f"  raft{i}: Raft = circle (37.00, -8.70) radius 9 m\n" for i in range(2))
-    with pytest.raises((RefusedError, Exception), match=r"may contain others|raft0"):
+    rafts = "".join(f"  raft{i}: Raft = circle (37.00, -8.70{i}) radius 9 m\n" for i in (2, 4))
+    with pytest.raises(RefusedError, match="'raft2' is not like 'raft4', since 'raft2' may contain others"):
         MissionSymmetry(load(text.replace("}\ndef", f"{rafts}}}\ndef"), "").initial)
 
 
