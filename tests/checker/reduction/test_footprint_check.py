@@ -89,6 +89,17 @@ BigActor a hosted_at uav0 with_behavior { observe(LINKED_TO(uav0)) react { case 
 BigActor b hosted_at vessel0 with_behavior { control(PUT drifter0 IN south0) }
 environment { observe may miss vessel0 }
 """
+RACING = """
+BigActor a hosted_at uav0 with_behavior {
+  observe(LINKED_TO(uav1)) react { case o => let n = size(o) send(("seen", n), c) control(MOVE_HOST_TO gate0)
+    if uav1 in o { control(MOVE_HOST_TO south0) } }
+}
+BigActor b hosted_at gcs1 with_behavior { control(HAND uav1 TO gcs2) }
+BigActor c hosted_at vessel0 with_behavior {
+  observe(CHILDREN(PARENT(uav0)))
+  react { case o: Observation if uav0 in o => react { case (w, n) if n == 4 => control(MOVE_HOST_TO gate0) } }
+}
+"""
 OF_B = [Waiting("b"), HostedAt("b", "uav0"), HasPending("b"), Ended("b"), Known("uav0")]
 
 
@@ -99,6 +110,7 @@ OF_B = [Waiting("b"), HostedAt("b", "uav0"), HasPending("b"), Ended("b"), Known(
         (MOVED_AND_HANDED, (), WORLD),
         (BOARDS, (), BOARDED),
         (MISSED, (), WORLD),
+        (RACING, (), WORLD),
         (SPAWNED, OF_B, WORLD),
     ],
     ids=[
@@ -106,6 +118,7 @@ OF_B = [Waiting("b"), HostedAt("b", "uav0"), HasPending("b"), Ended("b"), Known(
         "links of what moves",
         "what may be in what it boards",
         "what is missed with its carrier",
+        "what others have seen",
         "who is spawned",
     ],
 )
