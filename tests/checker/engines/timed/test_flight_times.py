@@ -9,6 +9,7 @@ from pyproj import Geod
 from checker import explore
 from semantics.state.requests import FLY
 from semantics.successors import expand
+from semantics.timing.arrivals import is_unfair
 from semantics.timing.flight_times import aim, interval_of_flight
 from semantics.timing.intervals import ANY_TIME, Interval
 
@@ -171,3 +172,29 @@ def test_a_flight_has_another_aim_when_a_place_on_it_has_another_shape_around_on
     for control in ("MOVE_HOST_TO near0", "MOVE_HOST_TO far0 VIA near0"):
         drifts = "near0 drifts among circle (37.02, -8.7) radius 200 m"
         assert len(of_flights(f"{going(control)}environment {{ {drifts} }}", f"UAV {SPEEDS}", aim)) == 2
+
+
+PROMISES = {
+    "nothing": ("", "sense within 5 s", True),
+    "that it arrives": ("environment { uav0 arrives }", "sense within 5 s", False),
+    "that another arrives": ("environment { uav1 arrives }", "sense within 5 s", True),
+    "how fast it flies": ("", f"uav0 {SPEEDS}", False),
+    "how fast another flies": ("", f"uav1 {SPEEDS}", True),
+}
+
+
+@pytest.mark.parametrize(("event", "line", "unfair"), PROMISES.values(), ids=PROMISES)
+def test_only_the_end_of_a_flight_of_which_nothing_is_promised_is_unfair(event, line, unfair):
+    c = load(f"{going('MOVE_HOST_TO near0')}{event}\ntiming {{ {line} }}\n", WORLD).initial
+    steps = [(each, step) for each in explore(c).configurations for step in expand(each).by_agents]
+    assert [is_unfair(*each) for each in steps] == [
+        each[1].label.rule == "commit" and unfair for each in steps
+    ]
+    assert len(steps) == 3
+
+
+def test_the_end_of_a_flight_of_several_is_promised_only_if_all_arrive():
+    for events, unfair in (("uav0 arrives", True), ("uav0 arrives uav1 arrives", False)):
+        c = load(f"{BOTH}{going('both(uav0)')}environment {{ {events} }}", WORLD).initial
+        ends = [(each, step) for each in explore(c).configurations for step in expand(each).by_agents]
+        assert is_unfair(*ends[-1]) is unfair
