@@ -15,11 +15,13 @@ from semantics.timing.intervals import ANY_TIME, Interval
 
 WORLD = """
 signature {
-  kind Place contains UAV, Ship, Buoy, Pad
+  kind Place contains UAV, Ship, Buoy, Pad, Raft
   kind UAV driven
   kind Ship driven carries UAV, Pad
   kind Pad driven carries UAV
-  kind Buoy carries UAV, Pad
+  kind Buoy carries UAV, Pad, Tug
+  kind Tug driven carries Raft
+  kind Raft carries UAV
 }
 world {
   near0: Place = circle (37.02, -8.7) radius 300 m
@@ -30,6 +32,9 @@ world {
   uav1: UAV = point (37.01, -8.7)
   uav2: UAV carried by ship0 linked mesh
   uav3: UAV carried by buoy0
+  uav4: UAV = point (37.051, -8.7) linked mesh
+  tug0: Tug carried by buoy0 linked mesh
+  raft0: Raft carried by tug0
   ship0: Ship = point (37.06, -8.7) linked mesh
   pad0: Pad carried by ship0
   pad1: Pad carried by buoy0
@@ -88,6 +93,7 @@ def lifting(vehicle, place):
     return f"BigActor a hosted_at {vehicle} with_behavior {{ {takes_off} }}\n"
 
 
+DRIFTS = "environment { buoy0 drifts within far0 }"
 FLIGHTS = {
     "to a place": (going("MOVE_HOST_TO near0"), "", NEAR - 300, NEAR),
     "by way of another, to which it may have to come back": (
@@ -99,6 +105,11 @@ FLIGHTS = {
     "from anywhere in a place": (
         going("MOVE_HOST_TO near0", "MOVE_HOST_TO far0"), "", BETWEEN - 600, BETWEEN + 300
     ),
+    "from where in a place it was at first, which does not matter": (
+        "BigActor a hosted_at uav4 with_behavior { control(MOVE_HOST_TO near0) }", "",
+        BETWEEN - 600, BETWEEN + 300,
+    ),
+    "beside what drifts": (going("MOVE_HOST_TO near0") + DRIFTS, "", NEAR - 300, NEAR),
     "from a circle that leaves the place": (
         going("MOVE_HOST_TO near0", "MOVE_HOST_TO far0"), ", circles 80 m",
         BETWEEN - 760, BETWEEN + 460 + pi * 160,
@@ -135,6 +146,8 @@ def test_of_several_that_fly_by_one_request_the_slowest_counts():
 def test_a_flight_need_not_end_while_its_destination_is_in_transit_or_has_no_room():
     for control in ("MOVE_HOST_TO ship0", "MOVE_HOST_TO near0 VIA ship0"):
         assert None in {each.hi for each in flights(going(control) + SAILS, f"UAV {SPEEDS}")}
+    sailing = Interval(floor((FAR - 300) / 20))  # it may be there already
+    assert sailing in flights(going("MOVE_HOST_TO ship0") + SAILS, f"UAV {SPEEDS}")
     full = "BigActor d hosted_at uav1 with_behavior { control(MOVE_HOST_TO near0) }"
     ends = {each.hi is None for each in of_flights(f"{ALONE}{going('alone(uav0)')}{full}", f"UAV {SPEEDS}")}
     assert ends == {False, True}
@@ -146,7 +159,6 @@ def test_what_is_not_said_is_not_assumed_of_a_flight():
     assert set(flights(going("MOVE_HOST_TO near0"), "agents react within 1 s")) == {ANY_TIME}
 
 
-DRIFTS = "environment { buoy0 drifts within far0 }"
 PUTS = """
 BigActor b hosted_at buoy0 with_behavior {
   control(PUT pad1 IN far0) observe(PARENT(pad1)) react { case there: Observation => send("go", a) }
@@ -156,6 +168,10 @@ UNKNOWN = {
     "to what drifts within a place": (going("MOVE_HOST_TO buoy0") + DRIFTS, 1),
     "to what is aboard of it": (going("MOVE_HOST_TO pad1") + DRIFTS, 1),
     "to what it has put down": (PUTS + lifting("uav0", "pad1") + DRIFTS, 1),
+    "to what another has put down aboard of it": (
+        PUTS.replace("buoy0", "tug0").replace("pad1", "raft0") + lifting("uav0", "raft0") + DRIFTS,
+        1,
+    ),
     "from aboard of what drifts": (lifting("uav3", "near0") + DRIFTS[:-1] + 'says "go" to a }', 1),
     "by way of what vanishes": (going("MOVE_HOST_TO near0 VIA high0") + "environment { high0 vanishes }", 2),
 }
