@@ -90,15 +90,23 @@ BigActor b hosted_at vessel0 with_behavior { control(PUT drifter0 IN south0) }
 environment { observe may miss vessel0 }
 """
 RACING = """
+rule enter(v: Vessel) { v || gate0 -> gate0.v }
 BigActor a hosted_at uav0 with_behavior {
-  observe(LINKED_TO(uav1)) react { case o => let n = size(o) send(("seen", n), c) control(MOVE_HOST_TO gate0)
-    if uav1 in o { control(MOVE_HOST_TO south0) } }
+  observe(CHILDREN(gate0))
+  react { case o => let n = size(o) control(MOVE_HOST_TO gate0) send(("seen", n), c) }
+}
+BigActor b hosted_at gcs0 with_behavior { control(HAND uav0 TO gcs1) }
+BigActor c hosted_at vessel0 with_behavior {
+  observe(LINKED_TO(uav1))
+  react { case o: Observation if size(o) < 9 => react { case (w, n) if n == 1 => control(enter(vessel0)) } }
+}
+"""
+ASKED = """
+BigActor a hosted_at gcs0 with_behavior {
+  observe(LINKED_TO(uav1)) react { case o => let n = size(o) send(("seen", n), c) control(HAND uav0 TO gcs1) }
 }
 BigActor b hosted_at gcs1 with_behavior { control(HAND uav1 TO gcs2) }
-BigActor c hosted_at vessel0 with_behavior {
-  observe(CHILDREN(PARENT(uav0)))
-  react { case o: Observation if uav0 in o => react { case (w, n) if n == 4 => control(MOVE_HOST_TO gate0) } }
-}
+BigActor c hosted_at uav0 with_behavior { react { case (w, n) if n == 4 => control(MOVE_HOST_TO gate0) } }
 """
 OF_B = [Waiting("b"), HostedAt("b", "uav0"), HasPending("b"), Ended("b"), Known("uav0")]
 
@@ -111,6 +119,7 @@ OF_B = [Waiting("b"), HostedAt("b", "uav0"), HasPending("b"), Ended("b"), Known(
         (BOARDS, (), BOARDED),
         (MISSED, (), WORLD),
         (RACING, (), WORLD),
+        (ASKED, (), WORLD),
         (SPAWNED, OF_B, WORLD),
     ],
     ids=[
@@ -118,7 +127,8 @@ OF_B = [Waiting("b"), HostedAt("b", "uav0"), HasPending("b"), Ended("b"), Known(
         "links of what moves",
         "what may be in what it boards",
         "what is missed with its carrier",
-        "what others have seen",
+        "what others have seen in a place that may have to be empty",
+        "what others have seen of links",
         "who is spawned",
     ],
 )
@@ -141,7 +151,9 @@ def test_nothing_lies_outside_of_a_search_that_begins_in_the_middle(variation):
     found = explore(start(f"{LOOKS_TWICE}{variation}\n")).configurations
     for number in sample(len(found), 40):
         begin = found[number]
-        ample = Ample(begin, OF_B)
+        asked = OF_B if number % 2 else ()
+        begin = begin if number % 2 else monitored(begin)
+        ample = Ample(begin, asked)
         for c in (begin, *(step.target for step in expand(begin).transitions)):
             assert set(outside(ample, c)) == set()
 
