@@ -106,7 +106,10 @@ BigActor a hosted_at gcs0 with_behavior {
   observe(LINKED_TO(uav1)) react { case o => let n = size(o) send(("seen", n), c) control(HAND uav0 TO gcs1) }
 }
 BigActor b hosted_at gcs1 with_behavior { control(HAND uav1 TO gcs2) }
-BigActor c hosted_at uav0 with_behavior { react { case (w, n) if n == 4 => control(MOVE_HOST_TO gate0) } }
+BigActor c hosted_at uav0 with_behavior {
+  observe(CHILDREN(PARENT(LINKED_TO(gcs1))))
+  react { case o: Observation if size(o) < 9 => react { case (w, n) if n == 4 => control(MOVE_HOST_TO gate0) } }
+}
 """
 OF_B = [Waiting("b"), HostedAt("b", "uav0"), HasPending("b"), Ended("b"), Known("uav0")]
 
@@ -143,6 +146,7 @@ BigActor a hosted_at uav0 with_behavior {
   react { case p => control(HAND uav0 TO gcs0) }
 }
 BigActor b hosted_at gcs0 with_behavior { react { case "in" => control(MOVE uav0 TO south0) } }
+BigActor c hosted_at uav1 with_behavior { control(MOVE_HOST_TO gate0) }
 """
 
 
