@@ -92,6 +92,8 @@ def asked_again(before: Configuration, after: Configuration, steps: Steps, asked
     """Ask again, after a transition, the slots and answers of a query."""
     names = touched(before, after)
     slots = changed_slots(before, after, names, asked)
+    if not _may_change(before, after, steps):
+        return Again(slots, steps)
     anew = resolved_anew(before, after, steps, names)
     is_local = anew == steps and not _turns_on(steps, names)
     if not meet(asked, _answers_about(names if is_local else (ANY,))):
@@ -99,6 +101,15 @@ def asked_again(before: Configuration, after: Configuration, steps: Steps, asked
     old = answers(steps, before.structure.physical, before.alpha)
     new = answers(anew, after.structure.physical, after.alpha)
     return Again(slots | relevant(differences(old, new, names if is_local else None), asked), anew)
+
+
+def _may_change(before: Configuration, after: Configuration, steps: Steps) -> bool:
+    """Whether a control has changed what a query looks at: places, or links."""
+    changed = {cell[0] for cell in after.state.changed(before.state)}
+    operators = {step.operator for step in steps}
+    looks_at_places = not operators.isdisjoint({"ALL", QueryOperator.PARENT, QueryOperator.CHILDREN})
+    looks_at_links = not operators.isdisjoint({"ALL", QueryOperator.LINKED_TO})
+    return ("placement" in changed and looks_at_places) or ("channels" in changed and looks_at_links)
 
 
 def resolved_anew(
@@ -145,12 +156,12 @@ def _answers_about(names: tuple[Name, ...]) -> Questions:
 
 
 def touched(before: Configuration, after: Configuration) -> tuple[Name, ...]:
-    """Return the entities whose parent or links in A(P) may have changed, sorted."""
+    """Return the entities whose parent or links in A(P) a control may have changed, sorted; it drops no channel."""
     everyone, setting = tuple(sorted(before.setting.kinds)), before.setting
     names: set[Name] = set()
     for cell in after.state.changed(before.state):
         holds = cell[0] == "placement" and setting.signature[setting.kind(cell[-1])].holds
-        if holds or cell[0] == "down":
+        if holds:
             return everyone
         if cell[0] in ("placement", "channels"):
             names.add(cell[-1])

@@ -181,6 +181,12 @@ SEEN = [
       control(MOVE uav1 TO north0) control(CONNECT_HOST_TO gcs0) case o => skip }
     a@uav0: ENTER
     """),
+    case("it waits in the one queue of all", "a", """
+    scheduler fcfs
+    control timed
+    a@uav0: LOOKS react { case o if not (uav1 in o) => control(MOVE_HOST_TO south0) ENTER send("go", b) case o => skip }
+    b@uav1: react { case "go" => ENTER }
+    """),
     case("as many are linked as before, though others", "", """
     b@gcs1: control(HAND uav1 TO gcs2)
     a@uav1: observe(LINKED_TO(uav1)) react { case o => if size(o) == 4 { ENTER } }

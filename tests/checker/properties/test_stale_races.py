@@ -31,10 +31,12 @@ from checker.properties.stale_steps import stale_steps
 from semantics import bigactor_rules
 from semantics.behaviours import process_conversion
 from semantics.behaviours.expressions import OPERATORS
-from semantics.behaviours.observations import Nodes, Observation
+from semantics.behaviours.observations import All as Everyone
+from semantics.behaviours.observations import Nodes, Observation, Of, QueryOperator, QueryStep
+from semantics.behaviours.queries import answers, denoted, resolve
 from semantics.races import monitor
 from semantics.races.monitor import monitored
-from semantics.races.provenance import ANY, EVERYTHING, MEMBERS, SIZE, Dependency
+from semantics.races.provenance import ANY, EVERYTHING, MEMBERS, SIZE, Dependency, differences
 from semantics.races.relevance import SLOTS
 from semantics.successors import expand
 from specs import MissionError
@@ -321,6 +323,66 @@ def test_what_its_holder_changes_is_not_remembered_where_it_tells_nobody():
 def received(c):
     """Return what it rests on that a has in its mailbox, and that it has been shown."""
     return list(filter(None, c.alpha.watch("a").mailbox)), [each.rests_on for each in c.eta.ready("a")]
+
+
+# --- what is asked again --------------------------------------------------------------------------------------
+
+CHANGES = written("""
+a@gcs0: control(MOVE uav0 TO gate0)
+b@gcs0: control(HAND uav0 TO gcs1)
+c@vessel0: control(MOVE_HOST_TO gate0)
+d@vessel0: control(DISCONNECT_HOST_FROM uav0)
+""")
+"""Each moves something, alone or with what is aboard, or changes what it is linked to."""
+
+WIDE = WORLD.replace("kind Vessel driven carries", "kind Vessel driven contains UAV carries").replace(
+    "point (36.975, -8.69)", "circle (36.98, -8.70) radius 100 m"
+)
+"""The vessel is a place too: it goes away from under uav1."""
+
+
+def queries(operators):
+    """Return the queries of some nodes with so many operators."""
+    if operators == 0:
+        return (Everyone(), *(Nodes((name,)) for name in ("uav0", "vessel0", "gate0")))
+    return tuple(Of(operator, inner) for operator in QueryOperator for inner in queries(operators - 1))
+
+
+def asked_in_full(before, after, steps):
+    """Return what has changed of a query, by asking all of it before and after; and its steps resolved anew."""
+    (old, was), (new, now) = ((c.structure.physical, c.alpha) for c in (before, after))
+    anew, same = steps[:1], True
+    for step in steps[1:]:
+        same = same and denoted(anew, old, was) == denoted(anew, new, now)
+        anew += (step if same else QueryStep(step.operator, denoted(anew, new, now)),)
+    keys = set(differences(answers(steps, old, was), answers(anew, new, now)))
+    for name in old.entities():
+        places = {p.abstract_parent(name) for p in (old, new)}
+        if len(places) > 1:
+            keys |= {("slot parent", name), *(("slot children", place) for place in places)}
+        if old.links(name) != new.links(name):
+            keys.add(("slot links", name))
+    return frozenset(keys), anew
+
+
+@pytest.mark.parametrize("world", [WORLD, WIDE], ids=["point", "place"])
+def test_of_each_query_what_a_control_changes_is_what_asking_all_of_it_again_shows(world):
+    first, served = start(CHANGES, world), {}
+    for c in explore(first).configurations:
+        for step in expand(c).by_agents:
+            if step.label.rule in monitor.CONTROLS:
+                served[step.label.agent] = (c, step.target)  # the last: much has changed before
+    assert len(served) == 4
+    changed = 0
+    for before, after in served.values():
+        for query in (each for operators in range(3) for each in queries(operators)):
+            steps = resolve(query, first.structure.physical, first.alpha)
+            found, anew = asked_in_full(before, after, steps)
+            assert monitor.asked_again(before, after, steps, EVERY) == (found, anew)
+            for key in sorted(found)[:: len(steps)]:
+                assert monitor.asked_again(before, after, steps, frozenset({key})) == ({key}, anew)
+            changed += bool(found)
+    assert changed > 100
 
 
 # --- by definition --------------------------------------------------------------------------------------------

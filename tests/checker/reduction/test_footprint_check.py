@@ -25,6 +25,7 @@ from semantics.properties import propositions
 from semantics.properties.propositions import Ended, HasPending, HostedAt, Inside, Known, Waiting
 from semantics.races.monitor import monitored
 from semantics.state.requests import CTR
+from semantics.successors import expand
 from specs import MissionError
 from specs.elaboration import load_mission
 
@@ -88,6 +89,28 @@ BigActor a hosted_at uav0 with_behavior { observe(LINKED_TO(uav0)) react { case 
 BigActor b hosted_at vessel0 with_behavior { control(PUT drifter0 IN south0) }
 environment { observe may miss vessel0 }
 """
+RACING = """
+rule enter(v: Vessel) { v || gate0 -> gate0.v }
+BigActor a hosted_at uav0 with_behavior {
+  observe(CHILDREN(gate0))
+  react { case o => let n = size(o) control(MOVE_HOST_TO gate0) send(("seen", n), c) }
+}
+BigActor b hosted_at gcs0 with_behavior { control(HAND uav0 TO gcs1) }
+BigActor c hosted_at vessel0 with_behavior {
+  observe(LINKED_TO(uav1))
+  react { case o: Observation if size(o) < 9 => react { case (w, n) if n == 1 => control(enter(vessel0)) } }
+}
+"""
+ASKED = """
+BigActor a hosted_at gcs0 with_behavior {
+  observe(LINKED_TO(uav1)) react { case o => let n = size(o) send(("seen", n), c) control(HAND uav0 TO gcs1) }
+}
+BigActor b hosted_at gcs1 with_behavior { control(HAND uav1 TO gcs2) }
+BigActor c hosted_at uav0 with_behavior {
+  observe(CHILDREN(PARENT(LINKED_TO(gcs1))))
+  react { case o: Observation if size(o) < 9 => react { case (w, n) if n == 4 => control(MOVE_HOST_TO gate0) } }
+}
+"""
 OF_B = [Waiting("b"), HostedAt("b", "uav0"), HasPending("b"), Ended("b"), Known("uav0")]
 
 
@@ -98,6 +121,8 @@ OF_B = [Waiting("b"), HostedAt("b", "uav0"), HasPending("b"), Ended("b"), Known(
         (MOVED_AND_HANDED, (), WORLD),
         (BOARDS, (), BOARDED),
         (MISSED, (), WORLD),
+        (RACING, (), WORLD),
+        (ASKED, (), WORLD),
         (SPAWNED, OF_B, WORLD),
     ],
     ids=[
@@ -105,11 +130,36 @@ OF_B = [Waiting("b"), HostedAt("b", "uav0"), HasPending("b"), Ended("b"), Known(
         "links of what moves",
         "what may be in what it boards",
         "what is missed with its carrier",
+        "what others have seen in a place that may have to be empty",
+        "what others have seen of links",
         "who is spawned",
     ],
 )
 def test_nothing_lies_outside_of(text, formulas, world):
     assert outside_of(start(text, world), formulas, most=400, count=60) == set()
+
+
+LOOKS_TWICE = """
+BigActor a hosted_at uav0 with_behavior {
+  observe(CHILDREN(gate0)) observe(LINKED_TO(uav0))
+  react { case o if uav1 in o => skip } control(MOVE_HOST_TO gate0) send("in", b)
+  react { case p => control(HAND uav0 TO gcs0) }
+}
+BigActor b hosted_at gcs0 with_behavior { react { case "in" => control(MOVE uav0 TO south0) } }
+BigActor c hosted_at uav1 with_behavior { control(MOVE_HOST_TO gate0) }
+"""
+
+
+@pytest.mark.parametrize("variation", ["", "scheduler unordered", "control timed"])
+def test_nothing_lies_outside_of_a_search_that_begins_in_the_middle(variation):
+    found = explore(start(f"{LOOKS_TWICE}{variation}\n")).configurations
+    for number in sample(len(found), 40):
+        begin = found[number]
+        asked = OF_B if number % 2 else ()
+        begin = begin if number % 2 else monitored(begin)
+        ample = Ample(begin, asked)
+        for c in (begin, *(step.target for step in expand(begin).transitions)):
+            assert set(outside(ample, c)) == set()
 
 
 BUSY = """

@@ -403,3 +403,24 @@ def test_a_footprint_that_leaves_something_out_is_noticed(what, nothing, text, m
 
 def test_two_that_may_be_at_the_same_two_hosts_may_be_at_different_ones():
     assert compared(start(APART)) is not None
+
+
+NEVER_ARRIVES = """
+BigActor a hosted_at uav0 with_behavior { control(MOVE_HOST_TO gate0) observe(HOST) react { case o => send("go", b) } }
+BigActor b hosted_at uav1 with_behavior {
+  observe(LINKED_TO(uav1)) react { case o: Observation => react { case "go" => skip } }
+}
+control timed
+check { deadlock_freedom arrival }
+"""
+
+
+@pytest.mark.parametrize(
+    "event", ["", "environment { gate0 drifts among circle (37.00, -8.70) radius 200 m }"]
+)
+@pytest.mark.parametrize("engine", [Engine.REFERENCE, Engine.FAST])
+def test_what_need_not_arrive_is_not_followed_before_others(event, engine):
+    mission = load(f"{NEVER_ARRIVES}{event}")
+    full, reduced = (check(mission, engine=engine, reduce=each) for each in ((), POR))
+    assert [each.outcome for each in reduced.verdicts] == [each.outcome for each in full.verdicts]
+    assert Outcome.VIOLATED in {each.outcome for each in full.verdicts}

@@ -1,5 +1,7 @@
 """Stutter invariance, beside its definition: idle steps in words of states and steps."""
 
+from random import Random
+
 import numpy as np
 import pytest
 from hypothesis import assume, given
@@ -11,7 +13,7 @@ from checker.properties.temporal.lasso_evaluation import is_true_on
 from checker.properties.temporal.lassos import Lasso
 from checker.properties.temporal.truth import FormulaTruth
 from checker.reduction.stutter_invariance import is_stutter_invariant
-from semantics.properties.propositions import Present
+from semantics.properties.propositions import Always, Present
 from semantics.properties.temporal import (
     Both,
     Denied,
@@ -34,6 +36,8 @@ LABELS = (Label("fun", "x"), Label("sense", "x"), Label("actuate", "x"))
 
 LETTERS = st.tuples(st.booleans(), st.booleans(), st.sampled_from([0, 0, 1, 2]))
 """Whether p is true, whether q is, and the step that is taken."""
+
+WORDS = [(p, False, step) for p in (False, True) for step in (0, 1)]
 
 FORMULAS = st.recursive(
     st.sampled_from([P, Q, A, B]),
@@ -105,3 +109,24 @@ def test_what_skips_idle_steps_is_invariant(formula):
 @pytest.mark.parametrize("formula", COUNTING, ids=str)
 def test_what_asks_for_the_very_next_step_is_not(formula):
     assert not is_stutter_invariant(formula)
+
+
+OPERANDS = [
+    *(P, Denied(P), A, Denied(A), Both(A, P), Either(A, P), Either(Denied(A), P), Eventually(A), Next(P)),
+    *(Both(A, Next(P)), Either(Denied(A), Next(P)), Both(Denied(A), Denied(B)), Both(A, Now(Always(True)))),
+]
+WAITING = [
+    *(make(one) for make in (Eventually, Globally) for one in OPERANDS),
+    *(make(one, other) for make in (Until, WeakUntil, Release) for one in OPERANDS for other in OPERANDS),
+]
+
+
+def test_of_all_small_formulas_no_idle_step_changes_one_that_is_taken_for_invariant():
+    draw = Random(0)
+    invariant = [each for each in WAITING if is_stutter_invariant(each)]
+    assert len(invariant) == 93  # of 533
+    for formula in invariant:
+        for _ in range(12):
+            stem, loop = (draw.choices(WORDS, k=size) for size in (draw.randrange(3), draw.randrange(1, 3)))
+            longer = [with_idle(part, draw.choices((0, 1), k=len(part))) for part in (stem, loop)]
+            assert is_true(formula, stem, loop) == is_true(formula, *longer), str(formula)

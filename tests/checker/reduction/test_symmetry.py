@@ -1,6 +1,7 @@
 """Symmetry: what is interchangeable is found, one configuration stands for its likes, and its runs replay."""
 
 from contextlib import suppress
+from dataclasses import replace
 from functools import cache
 from itertools import combinations
 
@@ -14,12 +15,13 @@ from swarms import LOOKS, ORBITS, mission, swarm, swarms
 
 from checker import Engine, Keeping, Limits, Outcome, Reduction, RefusedError, check, explore
 from checker.check import reductions_of
-from checker.reduction import Reduced
+from checker.reduction import Reduced, mission_automorphisms
 from checker.reduction.configuration_renaming import Renaming
 from checker.reduction.footprint_check import Drift
 from checker.reduction.symmetry import MissionSymmetry
 from checker.traces import replay, to_json
 from semantics import Scheduler, control
+from semantics.behaviours.expressions import Fault
 from semantics.properties.propositions import HasPending, Inside
 from semantics.races.monitor import monitored
 from semantics.state.configuration import Configuration
@@ -93,6 +95,33 @@ REFUSED = {
         {"body": LOOKS, "rest": "environment { robot1 drifts among room0 }"},
         "since the environment treats them differently",
     ),
+    "told more often": (
+        {"body": LOOKS, "rest": 'environment { says "go" to r0 says "go" to r1 at most 2 times }'},
+        "since the environment treats them differently",
+    ),
+    "sure to arrive": (
+        {"body": LOOKS, "rest": "environment { robot1 arrives }\ncontrol timed"},
+        "since of one flights arrive, of the other not",
+    ),
+    "missed": (
+        {"body": LOOKS, "rest": "environment { observe may miss robot1 }"},
+        "since an observation may miss one, and never the other",
+    ),
+    "named by a rule": (
+        {
+            "body": "control(enter(HOST))",
+            "rest": "rule enter(u: Robot) { u || room0.$0 || robot1 -> room0.($0 | u) || robot1 }",
+        },
+        "since the rule 'enter' distinguishes them",
+    ),
+    "of another kind": (
+        {"body": "skip", "robots": 1, "rest": "BigActor s hosted_at gcs0 with_behavior { visit() }"},
+        "'robot0' and 'gcs0' are not of one kind",
+    ),
+    "the name of a channel": (
+        {"body": LOOKS, "places": ["point (37.00, -8.70) linked net:robot0"] * 2},
+        "since a channel or a rule is named with 'robot0'",
+    ),
 }
 
 
@@ -102,6 +131,35 @@ def test_it_is_refused_with_the_reason(why):
     with pytest.raises(RefusedError, match="the reduction 'symmetry' is refused") as refused:
         MissionSymmetry(mission(**arguments).initial)
     assert reason in str(refused.value)
+
+
+def test_a_rule_that_is_a_function_is_tried_with_all_names(monkeypatch):
+    found = mission("control(enter(HOST))", rest="rule enter(u: Robot) { u || room0 -> room0.u }").initial
+    program = found.setting.program
+    enter = program.reactions["enter"]
+
+    def symmetry(make):
+        reactions = {**program.reactions, "enter": make}
+        setting = found.setting.with_(program=replace(program, reactions=reactions))
+        return MissionSymmetry(Configuration(setting, found.state))
+
+    def enter_anew(host, name):
+        return enter(host, name)
+
+    def at_home(host, name):
+        if host == name:
+            raise Fault("it is there already")
+        return enter(host, name)
+
+    assert symmetry(enter_anew).classes
+    assert symmetry(at_home).classes
+    with pytest.raises(RefusedError, match="since the rule 'enter' distinguishes them"):
+        symmetry(lambda host, _: enter(host, "robot1"))
+    monkeypatch.setattr(mission_automorphisms, "MOST_ARGUMENTS", 5**2)  # two robots, two rooms, a station
+    assert symmetry(enter_anew).classes
+    monkeypatch.setattr(mission_automorphisms, "MOST_ARGUMENTS", 5**2 - 1)
+    with pytest.raises(RefusedError, match="the rule 'enter' has too many arguments to be tried with all"):
+        symmetry(enter_anew)
 
 
 def test_it_is_refused_for_what_is_asked_of_one_or_remembered_of_each():
@@ -116,8 +174,8 @@ def test_it_is_refused_for_what_is_asked_of_one_or_remembered_of_each():
 
 def test_containers_are_not_exchanged_since_the_smallest_is_found_by_name():
     text = swarm(LOOKS, robots=1).replace("kind Station\n", "kind Station\n  kind Raft contains Robot\n")
-    rafts = "".join(f"  raft{i}: Raft = circle (37.00, -8.70) radius 9 m\n" for i in range(2))
-    with pytest.raises((RefusedError, Exception), match=r"may contain others|raft0"):
+    rafts = "".join(f"  raft{i}: Raft = circle (37.00, -8.70{i}) radius 9 m\n" for i in (2, 4))
+    with pytest.raises(RefusedError, match="'raft2' is not like 'raft4', since 'raft2' may contain others"):
         MissionSymmetry(load(text.replace("}\ndef", f"{rafts}}}\ndef"), "").initial)
 
 
