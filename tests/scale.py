@@ -1,4 +1,4 @@
-"""How much of a generated test is run: `make test` runs a part, `make test-long` more, `make fuzz` the whole."""
+"""How much of a test with many cases is run: a part by `make test`, more by `make test-long`, all by `make fuzz`."""
 
 import os
 
@@ -20,44 +20,64 @@ def examples(most, part=PART, **more):
     return settings(max_examples=most if IS_WHOLE else max(1, share), **more)
 
 
-def crossed(names, variations):
+FOLDED = "folded"
+"""A word in the keys of variations with compressed rows: under reductions, their loops take long to compile."""
+
+
+def some_of(variations, long):
+    """Return the variations to draw from; `make test` leaves out those whose key has the word `long`."""
+    is_all = IS_WHOLE or IS_LONG
+    return [each for key, each in variations.items() if is_all or long not in key.split()]
+
+
+PERIOD, SHORT = 9, {0, 5, 7}
+"""A third of all places, with all remainders by two and by three, so that these leave out no kind of variation."""
+
+
+def crossed(names, variations, long=None):
     """Decorate a test of every `name` under every `variation`.
 
-    Without `make fuzz`, each name is taken once, with the next variation; of these, two thirds are long.
+    Without `make fuzz`, each name is taken once, with the next variation. Two thirds of these are long, and those of a
+    variation whose key has the word `long`.
     """
     numbered = [
         (place, name, at, key) for place, name in enumerate(names) for at, key in enumerate(variations)
     ]
     pairs = [
-        pytest.param(name, variations[key], id=f"{name}-{key}", marks=_long(place, *LINES))
+        pytest.param(
+            *(name, variations[key]),
+            id=f"{name}-{key}",
+            marks=long_if(place % PERIOD not in SHORT or long in key.split()),
+        )
         for place, name, at, key in numbered
         if IS_WHOLE or at == place % len(variations)
     ]
     return lambda test: pytest.mark.fuzz(pytest.mark.parametrize(("name", "variation"), pairs)(test))
 
 
-LINES = (9, {0, 5, 7})
-"""A third of the places, with remainders of all kinds, so that no variation is left out by its number."""
+def seeds(most, part):
+    """Decorate a test of generated cases by their number: `make fuzz` takes all, else a part; half of them are long."""
+    numbers = some_long(range(most if IS_WHOLE else part), every=SHORTER)
+    return lambda test: pytest.mark.fuzz(pytest.mark.parametrize("seed", numbers)(test))
 
 
 def some_long(cases, every=3):
-    """Return the cases of a test; each `every`-th is run by `make test`, the others are long."""
-    return [pytest.param(case, marks=_long(place, every, {0})) for place, case in enumerate(cases)]
+    """Return the cases of a test, each a value or a tuple of several; all but each `every`-th are long."""
+    return [_case(case, long_if(place % every != 0)) for place, case in enumerate(cases)]
 
 
 def long_ones(*cases):
-    """Return cases of a test that `make test-long` alone runs: larger ones, or more of what another case tries."""
-    return [pytest.param(case, marks=pytest.mark.long) for case in cases]
+    """Return cases of a test that only `make test-long` runs: larger ones, or more of what another case tries."""
+    return [_case(case, long_if(True)) for case in cases]
 
 
-def _long(place, period, short):
-    return () if IS_WHOLE or place % period in short else pytest.mark.long
+def _case(case, marks):
+    return pytest.param(*case if isinstance(case, tuple) else (case,), marks=marks)
 
 
-def seeds(most, part):
-    """Decorate a test of generated cases by their number: `make fuzz` takes all, else a part, half of which is long."""
-    numbers = some_long(range(most if IS_WHOLE else part), every=SHORTER)
-    return lambda test: pytest.mark.fuzz(pytest.mark.parametrize("seed", numbers)(test))
+def long_if(is_long):
+    """Return the marks of a case."""
+    return pytest.mark.long if is_long else ()
 
 
 def soak(test):

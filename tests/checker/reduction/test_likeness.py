@@ -8,7 +8,7 @@ from itertools import combinations, product
 import pytest
 from checked_missions import load, visited
 from hypothesis import given
-from scale import IS_WHOLE, examples, seeds
+from scale import IS_WHOLE, examples, seeds, some_long
 from shipped import UNTIMED
 from swarms import swarms
 
@@ -57,7 +57,7 @@ def both(initial, most):
     return shared, apart
 
 
-@pytest.mark.parametrize("name", UNTIMED)
+@pytest.mark.parametrize("name", some_long(UNTIMED))
 def test_a_mission_that_ships_is_explored_as_if_nothing_were_shared(name):
     both(load_mission(name).initial, 800 if IS_WHOLE else 400)
 
@@ -264,7 +264,7 @@ def test_a_rule_says_whom_it_tells_apart(rule, apart):
         assert tried(make, one, other, names) is apart.isdisjoint({one, other})
 
 
-@pytest.mark.parametrize("name", UNTIMED)
+@pytest.mark.parametrize("name", some_long(UNTIMED))
 def test_beliefs_are_sorted_so_nothing_is_below_a_node_whose_kind_holds_nothing(name):
     initial = load_mission(name).initial
     signature, kind = initial.setting.signature, initial.setting.kind
