@@ -137,7 +137,7 @@ def test_what_a_plugin_publishes_is_looked_at_where_it_enters(tmp_path, spoilt):
 
 FULL = """
 import json, resource, sys
-sys.path[:0] = ["tests/adapters/live", "tests/adapters"]
+sys.path[:0] = ["tests/adapters/live", "tests/adapters", "tests"]
 from test_outside import on_a_full_disk
 from semantics.live_policy import Fallback
 print(json.dumps(on_a_full_disk(sys.argv[1], Fallback(sys.argv[2]))))
