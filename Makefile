@@ -43,8 +43,8 @@ test: lint  ## what must hold at each change; of generated tests a part (tests/s
 tests: $(STAMP) $(PARTS)
 	$(BIN)/python -m pytest -n 3 --dist worksteal -q -m "not long"
 
-test-long: $(STAMP) $(PARTS)  ## whole flights, killed processes, workers, compilations (some 10 minutes)
-	$(BIN)/python -m pytest -n 2 --dist worksteal -q -m long --timeout 1500
+test-long: $(STAMP) $(PARTS)  ## whole flights, killed processes, workers, compilations, more of what is generated (some 10 minutes)
+	BIGACTORS_LONG=1 $(BIN)/python -m pytest -n 2 --dist worksteal -q -m "long or hypothesis" --timeout 1500
 
 lint: $(STAMP)
 	$(BIN)/ruff check .

@@ -16,6 +16,22 @@ PHONE, TABLET, DESK = (
 AXE = Path(__file__).parents[1] / "adapters" / "console" / "page" / "node_modules" / "axe-core" / "axe.min.js"
 
 
+UNUSED = (
+    *("WebUIOmniboxPopup", "WebUIOmniboxAimPopup"),
+    *(
+        "AvoidUnnecessaryBeforeUnloadCheckSync",
+        "DestroyProfileOnBrowserClose",
+        "HttpsUpgrades",
+        "MediaRouter",
+    ),
+    *("OptimizationHints", "PaintHolding", "PreconnectToSearch", "ThirdPartyStoragePartitioning"),
+)
+"""Features of chromium that are switched off.
+
+The first two load pages of suggestions for the address bar of each window, at six times the cost of a small page of
+ours. Only the last of several such switches counts, so the others repeat playwright's own.
+"""
+
 PATIENCE = 60_000
 """Milliseconds in which whatever a test waits for comes, on the busiest machine."""
 
@@ -45,7 +61,8 @@ def chromium(*arguments):
         pytest.skip("there is no chromium")
     with playing.sync_playwright() as started:
         browser = started.chromium.launch(
-            executable_path=found, args=["--no-sandbox", "--disable-gpu", *arguments]
+            executable_path=found,
+            args=["--no-sandbox", "--disable-gpu", f"--disable-features={','.join(UNUSED)}", *arguments],
         )
         try:
             yield browser

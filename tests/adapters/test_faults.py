@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 from packets import beat, fixed, position
-from scale import seeds
+from scale import long_ones, seeds
 from worlds import AREA, EPOCH, World, flown, running, simulated, until
 
 from adapters.mavlink import Autopilot, Craft, Stations
@@ -36,7 +36,7 @@ def here(vehicle):
     return point(vehicle.body.latitude, vehicle.body.longitude)
 
 
-@pytest.mark.parametrize("kind", [Kind.PLANE, Kind.COPTER])
+@pytest.mark.parametrize("kind", [Kind.PLANE, *long_ones(Kind.COPTER)])
 @seeds(3, 1)
 @flown(disturbance=BAD, craft=Craft("uav0", fence=box((37.05, -8.55), (36.95, -8.65))), by="kind seed")
 async def test_it_arrives_though_a_third_is_lost_and_the_rest_comes_late_twice_and_in_disorder(f):

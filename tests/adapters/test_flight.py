@@ -3,7 +3,7 @@
 import asyncio
 
 import pytest
-from scale import crossed
+from scale import crossed, long_ones
 from worlds import AREA, EPOCH, FIELD, HOME, TINY, World, flight, flown, running, simulated, until
 
 from adapters.mavlink import Autopilot, Craft, Stations
@@ -40,7 +40,9 @@ async def test_every_kind_goes_to_a_place_and_is_published_inside_it(kind):
         assert f.vehicle.armed
 
 
-@pytest.mark.parametrize(("kind", "path"), [(Kind.PLANE, PATH), (Kind.COPTER, SHORT), (Kind.ROVER, SHORT)])
+@pytest.mark.parametrize(
+    ("kind", "path"), [(Kind.PLANE, PATH), *long_ones((Kind.COPTER, SHORT), (Kind.ROVER, SHORT))]
+)
 @flown(by="kind")
 async def test_every_kind_follows_a_path_to_its_end(f, kind, path):
     await f.completes(Follow("r1", "uav0", path), 900)

@@ -6,6 +6,7 @@ Other stations write over links of their own, so nothing of it is heard here: th
 import asyncio
 
 import pytest
+from scale import some_long
 from worlds import AREA, flight, flown, simulated, until
 
 from adapters.mavlink import Craft
@@ -342,7 +343,7 @@ def rally(latitude, longitude):
     return OnboardItem(Cmd.RALLY_POINT, *e7(latitude, longitude), 60.0)
 
 
-@pytest.mark.parametrize("kind", PLANES)
+@pytest.mark.parametrize("kind", some_long(PLANES))
 @flown(craft=Craft("uav0", fence=WIDE), by="kind")
 async def test_a_return_is_done_at_the_rally_point_that_it_leads_to(f):
     await finds(f, MissionType.RALLY, rally(37.01, -8.635))

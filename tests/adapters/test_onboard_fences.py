@@ -4,6 +4,7 @@ import asyncio
 from math import hypot
 
 import pytest
+from scale import long_ones
 from worlds import AREA, flight, flown, simulated, until
 
 from adapters.mavlink import Craft, Stations
@@ -131,7 +132,9 @@ async def test_a_vehicle_that_does_not_tell_what_it_may_do_is_flown_all_the_same
 # --- circles ----------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(("radius", "metres"), [(80.0, 105), (90.0, 118), (-80.0, 105)])
+@pytest.mark.parametrize(
+    ("radius", "metres"), [*long_ones((80.0, 105)), (90.0, 118), *long_ones((-80.0, 105))]
+)
 @simulated
 async def test_a_plane_stays_in_the_place_where_it_has_arrived_in_wind_too(radius, metres):
     async with flight(parameters={"WP_LOITER_RAD": radius}, wind=(5.0, 6.2)) as f:

@@ -4,6 +4,7 @@ import asyncio
 from dataclasses import replace
 
 import pytest
+from scale import long_ones
 from worlds import AREA, HOME, flown, until
 
 from adapters.live.loop import NotHeard
@@ -135,7 +136,10 @@ async def test_a_target_at_the_same_point_and_another_height_is_not_ours(f):
 
 @pytest.mark.parametrize(
     ("kind", "band"),
-    [(Kind.PLANE, Band(100.0, 140.0)), (Kind.COPTER, None), (Kind.PX4_COPTER, Band(100.0, 140.0))],
+    [
+        (Kind.PLANE, Band(100.0, 140.0)),
+        *long_ones((Kind.COPTER, None), (Kind.PX4_COPTER, Band(100.0, 140.0))),
+    ],
 )
 @flown(by="kind")
 async def test_a_home_that_is_moved_is_said_and_the_next_leg_is_flown_above_the_home_before(f, kind, band):

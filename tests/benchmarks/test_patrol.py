@@ -1,6 +1,7 @@
 from pathlib import Path
 
 import pytest
+from scale import long_ones
 from scripts import script
 
 from checker import Engine, explore
@@ -45,7 +46,7 @@ def test_a_patrol_that_does_not_fit_its_grid_is_refused(size):
 
 
 @pytest.mark.skipif(bool(spin.missing()), reason=f"not installed: {', '.join(spin.missing())}")
-@pytest.mark.parametrize("size", [(1, 3, True), (2, 2)])
+@pytest.mark.parametrize("size", [*long_ones(((1, 3, True),)), (2, 2)])
 def test_spin_counts_the_same_configurations_and_transitions(size, tmp_path):
     found = spin.search(patrol.promela_text(*size), tmp_path)
     assert (found.configurations, found.transitions) == COUNTS[size]

@@ -5,6 +5,7 @@ from pathlib import Path
 import pytest
 from oracles import oil_spill_in_promela as oil_spill
 from oracles import rendezvous_in_promela as rendezvous
+from scale import long_ones
 from scripts import BENCHMARKS, script
 
 from checker import Reduction, explore
@@ -45,7 +46,9 @@ def test_several_uavs_and_spills_have_their_counts(uavs, spills, known):
 
 
 @needs_spin
-@pytest.mark.parametrize(("uavs", "spills", "known"), [(2, 1, (510, 1_438)), (2, 2, (1_530, 6_354))])
+@pytest.mark.parametrize(
+    ("uavs", "spills", "known"), [(2, 1, (510, 1_438)), *long_ones((2, 2, (1_530, 6_354)))]
+)
 def test_spin_counts_as_many_for_several_uavs_and_spills(uavs, spills, known, tmp_path):
     found = spin.search(oil_spill.promela_text(uavs, spills), tmp_path)
     assert (found.configurations, found.transitions) == known
@@ -75,7 +78,7 @@ def test_the_reduced_search_for_stale_observations_grows_by_as_many_for_each_rob
 
 
 @needs_spin
-@pytest.mark.parametrize("robots", [3, 4])
+@pytest.mark.parametrize("robots", [3, *long_ones(4)])
 def test_spin_counts_as_many_for_several_robots(robots, tmp_path):
     found = spin.search(rendezvous.promela_text(robots), tmp_path)
     assert (found.configurations, found.transitions) == rendezvous.COUNTS[robots]

@@ -74,6 +74,7 @@ def asks_of(learner, tree):
     return found
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("most", "outcome"), [(37, "holds"), (36, "violated")])
 def test_a_deadline_flips_at_the_same_moment_in_local_time(most, outcome):
     text = timed_family.text(2, 1, scheduler="program_order").replace("within 2 h", f"within {10 * most} s")

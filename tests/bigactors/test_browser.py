@@ -3,6 +3,7 @@
 import json
 import re
 from io import BytesIO
+from itertools import product
 
 import pytest
 from browsers import DESK, PHONE, TABLET, Watch, chromium, faults, overflow, says, spilled, until
@@ -186,19 +187,16 @@ READ = {
 """The folder of a violation's trace, and who is to blame at which steps, as the page alone says it."""
 
 
-@pytest.mark.parametrize("scheme", ["light", "dark"])
 @pytest.mark.parametrize("name", READ)
-def test_who_did_what_and_when_is_read_from_the_page_alone_as_the_trace_has_it(
-    opened, tmp_path, name, scheme
-):
+def test_who_did_what_and_when_is_read_from_the_page_alone_as_the_trace_has_it(opened, tmp_path, name):
     folder, blamed = READ[name]
     mission = load_mission(name)
     write_evidence(Checked(name, mission, digest_of(mission), check(mission), False), tmp_path)
     page = opened((tmp_path / folder / "trace.html").read_text(encoding="utf-8"))
-    page.emulate_media(color_scheme=scheme)
-    for size in (TABLET, PHONE, DESK):
+    for scheme, size in product(("light", "dark"), (TABLET, PHONE, DESK)):
+        page.emulate_media(color_scheme=scheme)
         page.set_viewport_size(size)
-        assert (spilled(page), overflow(page), faults(page)) == ([], 0, []), size
+        assert (spilled(page), overflow(page), faults(page)) == ([], 0, []), (scheme, size)
     told = [each.strip() for each in page.locator(".story li").all_inner_texts()]
     read = [
         found.groups()

@@ -13,7 +13,7 @@ from engine_strategies import solid_rules, system
 from explored_systems import GROWING, SYSTEMS, WALK, told
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from scale import IS_WHOLE, crossed, examples
+from scale import IS_WHOLE, crossed, examples, long_ones
 
 from bigraphs import exploration, file_columns, resumption, workers
 from bigraphs.algebra import lean
@@ -111,7 +111,7 @@ def test_so_it_is_for_generated_systems(rules, initial, most):
     assert again.world.rows == whole.world.rows
 
 
-@pytest.mark.parametrize("seconds", [0.0, 9.0])
+@pytest.mark.parametrize("seconds", [*long_ones(0.0), 9.0])
 @pytest.mark.usefixtures("_often")
 def test_so_does_each_of_many_checkpoints_and_what_went_on_is_saved_again(seconds, monkeypatch):
     monkeypatch.setattr(resumption, "REPEATED", seconds)

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 import pytest
-from scale import IS_WHOLE
+from scale import IS_WHOLE, some_long
 
 from checker import Engine, Limits, Outcome, Reduction, Report, check
 from semantics import Control, Scheduler
@@ -167,7 +167,7 @@ def with_regions(name: str) -> str:
     return f"{text}\nenvironment {{\n{strays}\n}}\ncheck {{\n{checks}\n}}\n"
 
 
-@pytest.mark.parametrize("name", SHIPPED)
+@pytest.mark.parametrize("name", some_long(SHIPPED))
 def test_properties_about_ways_change_no_configuration(name):
     timed = Variation(control=Control.TIMED)
     plain = load_mission(MISSIONS / f"{name}.mission", timed)

@@ -74,7 +74,7 @@ def test_a_configuration_has_the_scheduler_and_control_that_were_asked_for(c):
 def test_the_rules_of_the_paper_are_all_reached_by_random_runs():
     seen: set[str] = set()
 
-    @examples(100)
+    @examples(200)
     @given(hypothesis_strategies.initial_configurations(), st.randoms(use_true_random=False))
     def run(c: Configuration, dice: random.Random) -> None:
         with suppress(Fault):

@@ -5,6 +5,7 @@ from dataclasses import replace
 import pytest
 from audited import flown_with
 from live_missions import TOUR, Run, mission, plan_of, seen
+from scale import long_ones
 from test_flying import options_of
 
 from adapters.live.surroundings import spots
@@ -60,7 +61,7 @@ def at_home(kind=Kind.PLANE, **more):
     return Vehicle(kind, (37.0, -8.6, 20.0), **more)
 
 
-@pytest.mark.parametrize("kind", [Kind.PLANE, Kind.COPTER])
+@pytest.mark.parametrize("kind", [Kind.PLANE, *long_ones(Kind.COPTER)])
 def test_a_vehicle_circles_in_its_place_and_out_of_the_smaller_places_in_it(tmp_path, capsys, kind):
     vehicle = at_home(kind, wind=(5.0, 6.2))
     _, terminal = flight(bay(tmp_path, NEAR), vehicle)
@@ -72,7 +73,7 @@ def test_a_vehicle_circles_in_its_place_and_out_of_the_smaller_places_in_it(tmp_
     assert not overlaps(circle((37.0165, -8.6), 120), around)
 
 
-@pytest.mark.parametrize(("wind", "broken"), [((5.0, 6.2), False), ((12.0, 9.0), True)])
+@pytest.mark.parametrize(("wind", "broken"), [*long_ones(((5.0, 6.2), False)), ((12.0, 9.0), True)])
 def test_a_plane_that_the_wind_carries_out_of_its_place_breaks_an_assumption_that_says_so(
     tmp_path, capsys, wind, broken
 ):

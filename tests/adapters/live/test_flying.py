@@ -64,6 +64,7 @@ BigActor op hosted_at gcs0 with_behavior {
 )
 
 
+@pytest.mark.long
 def test_with_a_third_of_all_packets_lost_a_mission_is_flown_and_committed_as_it_was_seen(folder):
     bad = Disturbance(loss=0.3, duplication=0.1, delay=(0.0, 0.3))
     flown = flown_in(folder, TOUR_MISSION, copter(), disturbance=bad, seconds=1500)

@@ -15,6 +15,7 @@ from types import SimpleNamespace
 import aiohttp
 import pytest
 from live_missions import TOUR, WEST, plan_of
+from scale import long_ones
 from test_loop import GO, Looker, Vehicle
 from worlds import World, flight, simulated, until
 
@@ -136,7 +137,7 @@ def test_what_a_plugin_publishes_is_looked_at_where_it_enters(tmp_path, spoilt):
 
 FULL = """
 import json, resource, sys
-sys.path[:0] = ["tests/adapters/live", "tests/adapters"]
+sys.path[:0] = ["tests/adapters/live", "tests/adapters", "tests"]
 from test_outside import on_a_full_disk
 from semantics.live_policy import Fallback
 print(json.dumps(on_a_full_disk(sys.argv[1], Fallback(sys.argv[2]))))
@@ -170,7 +171,7 @@ def on_a_full_disk(path, fallback):
     }
 
 
-@pytest.mark.parametrize(("fallback", "last"), [("return", Return), ("continue", GoTo)])
+@pytest.mark.parametrize(("fallback", "last"), [("return", Return), *long_ones(("continue", GoTo))])
 def test_a_full_disk_ends_no_run_the_vehicle_does_what_the_mission_says(tmp_path, fallback, last):
     path = tmp_path / "run.mcap"
     line = [sys.executable, "-c", FULL, str(path), fallback]

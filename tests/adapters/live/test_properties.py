@@ -138,7 +138,7 @@ def assert_nothing_is_sent_before_the_vehicle_is_heard_and_requests_are_named_on
         assert not {"GoTo", "HandOver"} & set(run.told)
 
 
-@examples(120)
+@examples(240)
 @given(histories())
 def test_a_live_run_is_one_of_the_rules_and_commits_and_tells_only_what_it_may(history):
     run = Run(PLAN)

@@ -8,6 +8,7 @@ import pytest
 from audited import copter, flown_with
 from live_missions import BESIDE, TOUR, TWO
 from pyproj import Geod
+from scale import long_ones
 
 from adapters.live.run_watchers import Watcher
 from adapters.recording.recording_reader import read_recording
@@ -95,6 +96,7 @@ def test_a_vehicle_that_is_blown_off_its_way_breaks_strays_and_holds(tmp_path, c
     assert f"broken assumption: {broken.message}" in capsys.readouterr().err
 
 
+@pytest.mark.long
 def test_a_vehicle_in_calm_air_keeps_to_its_way_and_commits(tmp_path, capsys):
     terminal, _ = flight(prepared(tmp_path, STRAYS.replace("MOST", "40 m"), seconds=500), copter())
     assert not terminal.broken
@@ -126,7 +128,7 @@ def drift(first, second):
     return lambda simulator: (come(simulator),)
 
 
-@pytest.mark.parametrize("response", ["continue", "hold"])
+@pytest.mark.parametrize("response", [*long_ones("continue"), "hold"])
 def test_two_vehicles_that_come_near_break_their_distance_at_once(tmp_path, capsys, response):
     first, second = copter(), Vehicle(Kind.COPTER, (*BESIDE, 20.0), system=2)
     asked = prepared(

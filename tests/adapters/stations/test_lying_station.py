@@ -10,6 +10,7 @@ from flown_processes import free_port, until
 from live_missions import LIVE, Run, plan_of
 from msgspec import Raw
 from msgspec.json import encode
+from scale import long_ones
 
 from adapters.live.plan import Plan
 from adapters.plugin import Delivered
@@ -93,7 +94,7 @@ def test_a_forged_parcel_does_not_enter(lie):
     assert "parcel 1 of gcs0 cannot enter" in run.messages()[0]
 
 
-@pytest.mark.parametrize("lie", [LIES[0], LIES[-1]], ids=["forged", "unreadable"])
+@pytest.mark.parametrize("lie", [LIES[0], *long_ones(LIES[-1])], ids=["forged", "unreadable"])
 def test_a_forged_parcel_is_refused_and_recorded_and_the_run_goes_on(tmp_path, lie):
     path = tmp_path / "lie.mission"
     path.write_text(MISSION)

@@ -6,6 +6,7 @@ import importlib.util
 import pytest
 from option_pairs import FEATURES, PAIRS, WRONG, folded, marked, of_system, text_of
 from repository import name_of, parsed, sources
+from scale import long_if
 
 from bigactors.arguments import make_parser
 from bigactors.cli import main
@@ -27,6 +28,7 @@ CASES = [
     )
     for pair in PAIRS
 ]
+REDUCED = Feature.POR, Feature.SYMMETRY
 REFUSED = [pair for pair in UNSUPPORTED if pair.why.is_refusal and pair.one is not Feature.MODEL]
 
 
@@ -39,7 +41,10 @@ def test_each_pair_runs_as_the_reference_engine_does_or_is_refused_by_the_table(
     assert mark.startswith("✓") or (pair is not None and mark == pair.reason)
 
 
-@pytest.mark.parametrize("other", FEATURES[2:], ids=lambda each: each.name)
+@pytest.mark.parametrize(
+    "other",
+    [pytest.param(each, id=each.name, marks=long_if(each in REDUCED)) for each in FEATURES[2:]],
+)
 def test_folded_rows_and_systems_of_bigraphs_agree_with_the_reference_too(other):
     assert not folded(other).startswith(WRONG)
     assert not of_system(other).startswith(WRONG)

@@ -13,7 +13,7 @@ from covering import covering_array, pairs_of, spread
 from features import LANGUAGE, NO, OPTIONS, YES, text_of
 from option_pairs import spilled_rows
 from replaying import assert_replays
-from scale import IS_WHOLE
+from scale import IS_WHOLE, long_if
 
 from checker import CombinationError, Engine, Keeping, Limits, Reduction, ZoneClock, check
 from checker.check import reductions_of
@@ -49,7 +49,10 @@ SEEDS = range(3)
 CASES = [(number, seed) for seed in SEEDS for number in range(len(ARRAY)) if number not in LARGE]
 COMPARED = [row for number, row in enumerate(ARRAY) if number not in LARGE]
 FAST = [row for row in COMPARED if (row["engine"], row["timing"]) == ("fast", NO)]
-FEW = [(ARRAY.index(row), 0) for row in spread(FAST, 5)]
+FEW = [
+    pytest.param(ARRAY.index(row), 0, marks=long_if(row["rows"] == "compressed" and row["reduction"] != NO))
+    for row in spread(FAST, 5)
+]
 """Without times, which whole ticks take long to go through (`engines/timed` compares smaller ones)."""
 
 

@@ -8,9 +8,14 @@ from itertools import combinations, product
 import pytest
 from checked_missions import load, visited
 from hypothesis import given
+<<<<<<< HEAD
 from hypothesis import strategies as st
 from scale import IS_WHOLE, examples, seeds
 from shipped import TIMED, UNTIMED
+=======
+from scale import IS_WHOLE, examples, seeds, some_long
+from shipped import UNTIMED
+>>>>>>> w-suite
 from swarms import swarms
 from timed_missions import alike_timings, with_timing
 from timed_reports import assert_alike
@@ -64,6 +69,7 @@ def both(initial, most):
     return shared, apart
 
 
+<<<<<<< HEAD
 def zones(found):
     """The number of zones in a mission with times."""
     return None if found.times is None else found.times.search.count
@@ -75,6 +81,9 @@ def runs_of(found):
 
 
 @pytest.mark.parametrize("name", [*UNTIMED, *TIMED])
+=======
+@pytest.mark.parametrize("name", some_long(UNTIMED))
+>>>>>>> w-suite
 def test_a_mission_that_ships_is_explored_as_if_nothing_were_shared(name):
     both(load_mission(name).initial, 800 if IS_WHOLE else 400)
 
@@ -319,7 +328,7 @@ def test_a_rule_says_whom_it_tells_apart(rule, apart):
         assert tried(make, one, other, names) is apart.isdisjoint({one, other})
 
 
-@pytest.mark.parametrize("name", UNTIMED)
+@pytest.mark.parametrize("name", some_long(UNTIMED))
 def test_beliefs_are_sorted_so_nothing_is_below_a_node_whose_kind_holds_nothing(name):
     initial = load_mission(name).initial
     signature, kind = initial.setting.signature, initial.setting.kind

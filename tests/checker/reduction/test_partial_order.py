@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from mission_texts import missions
 from random_formulas import atoms_of
-from scale import IS_WHOLE, crossed, examples
+from scale import IS_WHOLE, crossed, examples, long_ones
 from shipped import UNTIMED
 
 from checker import Engine, Limits, Outcome, Reduction, RefusedError, check, explore
@@ -67,7 +67,7 @@ def endless(name, variation):
     return name in ("nomad", "search_and_deploy") and variation.scheduler is Scheduler.UNORDERED
 
 
-@pytest.mark.parametrize("name", ["takeover", "broken_deadlock"])
+@pytest.mark.parametrize("name", [*long_ones("takeover"), "broken_deadlock"])
 def test_a_larger_mission_has_the_same_findings(name):
     mission = load_mission(name)
     whole, part = compared(mission.initial, asked_of(mission))

@@ -22,9 +22,11 @@ def njit(**options: Any) -> Callable[[Loop], Loop]:
 
     def compiled(loop: Loop) -> Loop:
         found: Any = decorator(loop)
+        compile_for = found.compile
         if options.get("cache"):
             found._cache = LoopCache(loop)  # noqa: SLF001 - numba has no other way to say when a cache is void
-        found.compile = for_wide_integers(found.compile)
+            compile_for = found._cache.compiling_alone()(compile_for)  # noqa: SLF001
+        found.compile = for_wide_integers(compile_for)
         return found  # type: ignore[no-any-return]  # it has the loop's signature
 
     return compiled

@@ -7,12 +7,20 @@ constants of other files. After an update of one such file, numba alone would ru
 import pickle
 import re
 from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
 from functools import cache
 from hashlib import sha256
 from pathlib import Path
-from typing import Any, Final
+from typing import IO, Any, Final
 
 from numba.core.caching import FunctionCache, IndexDataCacheFile
+from numba.core.compiler_lock import global_compiler_lock
+from numba.core.event import trigger_event
+
+try:
+    import fcntl
+except ImportError:  # Windows: there, processes that begin together compile a loop more than once
+    fcntl = None  # type: ignore[assignment]
 
 ENGINES: Final = Path(__file__).parents[2]
 IMPORT: Final = re.compile(r"^from (?:bigactors\.)?(\w[\w.]*) import (\([^)]*\)|.*)", re.MULTILINE)
@@ -44,6 +52,43 @@ class LoopCache(FunctionCache):
     def __init__(self, loop: Callable[..., Any]) -> None:
         super().__init__(loop)  # type: ignore[no-untyped-call]
         self._cache_file = _Index(self._cache_path, self._impl.filename_base, stamp(ENGINES))  # type: ignore[no-untyped-call]
+
+    @contextmanager
+    def compiling_alone(self) -> Iterator[None]:
+        """Let no other process compile this loop meanwhile, so that those that begin together share the work.
+
+        Waiting for another process counts as compiling. Where there can be no lock file, nothing is waited for.
+        """
+        with global_compiler_lock:  # first: threads of one process would wait for each other's locks
+            with suppress(OSError):
+                self._impl.locator.ensure_cache_path()
+            try:
+                opened = open(f"{self._cache_path}/{self._impl.filename_base}.lock", "w")  # noqa: SIM115
+            except OSError:
+                yield
+                return
+            with opened:
+                _lock(opened)
+                try:
+                    yield
+                finally:
+                    _unlock(opened)
+
+
+def _lock(opened: IO[str]) -> None:
+    """Wait until no other process has locked a file."""
+    if fcntl is not None:
+        try:
+            fcntl.flock(opened, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            with trigger_event("numba:compile"):
+                fcntl.flock(opened, fcntl.LOCK_EX)
+
+
+def _unlock(opened: IO[str]) -> None:
+    """Release a lock at once, also where a forked process has the file open."""
+    if fcntl is not None:
+        fcntl.flock(opened, fcntl.LOCK_UN)
 
 
 @cache

@@ -8,7 +8,7 @@ import pytest
 from checked_missions import load, visited
 from hypothesis import given
 from local_crew import LocalCrew, explore_in_threads
-from scale import IS_WHOLE, examples
+from scale import IS_WHOLE, examples, long_ones, some_long
 
 from checker import CheckpointError, Engine, Keeping, Limits, MachineError, check, explore
 from checker.engines.archive import read_archive, write_archive
@@ -73,7 +73,7 @@ def collected(inspect, found):
     ]  # fmt: skip
 
 
-@pytest.mark.parametrize(("name", "workers"), list(zip(FEW, (2, 5, 3, 2, 3, 5), strict=False)))
+@pytest.mark.parametrize(("name", "workers"), some_long(zip(FEW, (2, 5, 3, 2, 3, 5), strict=False)))
 @pytest.mark.usefixtures("small_rounds")
 def test_workers_visit_together_what_one_process_visits_alone(name, workers):
     for initial in (start(name), monitored(start(name))):
@@ -204,7 +204,7 @@ def test_what_is_interrupted_while_rows_are_on_their_way_is_not_kept(tmp_path):
     assert not list(tmp_path.rglob("latest.checkpoint"))
 
 
-@pytest.mark.parametrize("name", ["two_gates", "surveillance", "distributed_handover"])
+@pytest.mark.parametrize("name", ["two_gates", *long_ones("surveillance", "distributed_handover")])
 def test_workers_fold_their_rows(name, tmp_path, monkeypatch):
     initial = start(name)
     alone = explore(initial, engine=Engine.FAST)
@@ -268,7 +268,7 @@ def test_suspected_ways_are_decided_by_all_workers_and_when_resumed(monkeypatch,
 # --- who is lost ----------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("every", [0.0, 60.0])
+@pytest.mark.parametrize("every", [0.0, *long_ones(60.0)])
 @pytest.mark.usefixtures("small_rounds")
 def test_whenever_a_worker_is_lost_nothing_is_lost_with_it(tmp_path, every):
     initial = start("broken_unrealisable")
@@ -293,7 +293,7 @@ class Seldom(Expedition):
             super().save()
 
 
-@pytest.mark.parametrize("dies", [((60, 1),), ((25, 0), (110, 1), (170, 0), (250, 1))])
+@pytest.mark.parametrize("dies", [((60, 1),), *long_ones((((25, 0), (110, 1), (170, 0), (250, 1)),))])
 @pytest.mark.usefixtures("small_rounds")
 def test_whoever_was_not_lost_at_first_may_be_lost_later(tmp_path, dies):
     initial = start("distributed_handover")

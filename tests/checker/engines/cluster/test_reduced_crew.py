@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from local_crew import LocalCrew, explore_in_threads
 from random_formulas import atoms_of
-from scale import IS_WHOLE, crossed, examples
+from scale import IS_WHOLE, crossed, examples, long_ones
 from test_fast_symmetry import EITHER, FAMILIES
 from test_partial_order import BUSY, POR, TEXTS
 from test_preserved_runs import compared, drawn
@@ -67,7 +67,9 @@ def test_two_workers_fold_representatives(monkeypatch):
     assert set(found.configurations) == set(alone.configurations)
 
 
-@pytest.mark.parametrize("name", ["takeover", "convoy", "rendezvous", "surveillance", "oil_spill"])
+@pytest.mark.parametrize(
+    "name", ["oil_spill", *long_ones("surveillance", "takeover", "convoy", "rendezvous")]
+)
 def test_two_workers_visit_of_shipped_missions_as_few_as_one_process_does(name):
     mission = load_mission(name)
     formulas = [each.formula for each in mission.properties if each.formula is not None]
@@ -84,7 +86,7 @@ def test_paths_that_go_round_end_where_those_of_one_process_do(monkeypatch):
     assert alone.size == 2_652
 
 
-@pytest.mark.parametrize("variation", EITHER)
+@pytest.mark.parametrize("variation", ["symmetry", *long_ones("both")])
 def test_a_reduced_search_whose_worker_is_lost_goes_on_from_its_checkpoint(variation, tmp_path):
     initial = FAMILIES["see each other"].initial
     reduced = Reduced(initial, EITHER[variation])

@@ -1,9 +1,12 @@
 """Compiled loops are cached, but never those of other code than the present."""
 
+import fcntl
 import pickle
 import subprocess
 import sys
+from contextlib import ExitStack
 from importlib import import_module
+from pathlib import Path
 
 import pytest
 
@@ -118,3 +121,49 @@ def test_an_index_of_modules_that_are_gone_is_empty(tmp_path, monkeypatch):
     assert found.load("key") is None
     found.save("key", b"new")
     assert found.load("key") == b"new"
+
+
+TOGETHER = """\
+import sys
+from pathlib import Path
+from numba.core.event import Listener, register
+from checker.engines.fast.compiled import loop_cache
+loop_cache.ENGINES = Path(sys.argv[1])
+sys.path.insert(0, sys.argv[1])
+from loop_cache_shared import step
+
+class Compiling(Listener):
+    def on_start(self, event):
+        print("compiling", flush=True)
+
+    def on_end(self, event):
+        pass
+
+register("numba:compile", Compiling())
+print(step._cache._cache_path, step._cache._impl.filename_base, flush=True)
+sys.stdin.readline()
+print(step(1), sum(step.stats.cache_misses.values()))
+"""
+
+
+def test_processes_that_begin_together_compile_a_loop_once(tmp_path, monkeypatch):
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "cache"))
+    folder = tmp_path / "checker" / "engines"
+    folder.mkdir(parents=True)
+    text = CALLEE.format(more=1).replace("inner", "njit")
+    (folder / "loop_cache_shared.py").write_text(text, encoding="utf-8")
+    line = [sys.executable, "-B", "-c", TOGETHER, str(folder)]
+    pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "text": True}
+    with ExitStack() as ended:
+        both = [ended.enter_context(subprocess.Popen(line, **pipes)) for _ in range(2)]
+        for each in both:
+            ended.callback(each.kill)
+        (where,) = {tuple(each.stdout.readline().split()) for each in both}
+        Path(where[0]).mkdir(parents=True, exist_ok=True)
+        with open("{}/{}.lock".format(*where), "w") as held:
+            fcntl.flock(held, fcntl.LOCK_EX)
+            for each in both:
+                print(file=each.stdin, flush=True)
+            assert [each.stdout.readline() for each in both] == ["compiling\n"] * 2  # or waiting
+        found = [each.stdout.read().split() for each in both]
+    assert sorted(found) == [["2", "0"], ["compiling", "2", "1"]]

@@ -6,7 +6,7 @@ import pytest
 from checked_missions import interrupted_at, load
 from hypothesis import given
 from hypothesis import strategies as st
-from scale import IS_WHOLE, crossed, examples
+from scale import FOLDED, IS_WHOLE, crossed, examples, long_if
 from shipped import UNTIMED
 from swarms import LOOKS, ORBITS, mission, swarms
 
@@ -73,7 +73,7 @@ def assert_goes_on(initial, reductions, folder, cuts, threads=1, runs=()):
     return whole
 
 
-@crossed(list(SWARMS), MANNERS)
+@crossed(list(SWARMS), MANNERS, long=FOLDED)
 def test_what_was_cut_goes_on(tmp_path, monkeypatch, name, variation):
     reductions, plain = variation
     keep(monkeypatch, plain)
@@ -83,7 +83,10 @@ def test_what_was_cut_goes_on(tmp_path, monkeypatch, name, variation):
         assert whole.size > 5
 
 
-@pytest.mark.parametrize(("reductions", "plain"), MANNERS.values(), ids=MANNERS)
+@pytest.mark.parametrize(
+    ("reductions", "plain"),
+    [pytest.param(*manner, id=key, marks=long_if(FOLDED in key)) for key, manner in MANNERS.items()],
+)
 def test_followed_transitions_are_kept_for_properties_of_runs(tmp_path, monkeypatch, reductions, plain):
     keep(monkeypatch, plain)
     there = "forall r: Robot . actually r in room0"

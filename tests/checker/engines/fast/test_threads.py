@@ -8,7 +8,7 @@ import pytest
 from checked_missions import interrupted_at, load
 from hypothesis import given
 from hypothesis import strategies as st
-from scale import IS_WHOLE, crossed, examples
+from scale import FOLDED, IS_WHOLE, crossed, examples, long_ones, some_of
 from shipped import UNTIMED
 from swarms import LOOKS, ORBITS, mission, swarms
 
@@ -132,18 +132,18 @@ def assert_reduced_alike(initial, reductions, threads, plain):
     assert several == alone
 
 
-@crossed(list(SWARMS), REDUCED)
+@crossed(list(SWARMS), REDUCED, long=FOLDED)
 def test_swarms_are_reduced_alike_by_any_number_of_threads(name, variation):
     assert_reduced_alike(mission(*SWARMS[name]).initial, *variation)
 
 
-@crossed(UNTIMED, REDUCED)
+@crossed(UNTIMED, REDUCED, long=FOLDED)
 def test_missions_are_reduced_alike_by_any_number_of_threads(name, variation):
     with suppress(RefusedError):
         assert_reduced_alike(start(name), *variation)
 
 
-@given(swarms(), st.sampled_from(list(REDUCED.values())))
+@given(swarms(), st.sampled_from(some_of(REDUCED, FOLDED)))
 @examples(30)
 def test_generated_swarms_are_reduced_alike_by_any_number_of_threads(text, variation):
     with suppress(RefusedError):
@@ -259,6 +259,7 @@ def test_rows_go_over_to_files_under_several_threads(tmp_path, monkeypatch, thre
 
 
 @pytest.mark.usefixtures("kept")
+@pytest.mark.parametrize("kept", [KEPT["plain"], *long_ones(KEPT["folded"])], ids=KEPT, indirect=True)
 @pytest.mark.parametrize(
     "reductions",
     [

@@ -2,7 +2,7 @@
 
 import pytest
 from hypothesis import HealthCheck, assume, given
-from scale import examples
+from scale import examples, some_long
 from shipped import TIMED
 from timed_models import ENDURANCE, questions
 
@@ -59,7 +59,7 @@ def timed(properties):
     return [each for each in properties if each.kind in kinds]
 
 
-@pytest.mark.parametrize("name", TIMED)
+@pytest.mark.parametrize("name", some_long(TIMED, every=2))
 def test_a_shipped_mission_is_divided(name):
     mission = load_mission(name)
     mission = mission.under(Scheduler.PROGRAM_ORDER, mission.setting.control)
