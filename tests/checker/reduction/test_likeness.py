@@ -8,14 +8,9 @@ from itertools import combinations, product
 import pytest
 from checked_missions import load, visited
 from hypothesis import given
-<<<<<<< HEAD
 from hypothesis import strategies as st
-from scale import IS_WHOLE, examples, seeds
-from shipped import TIMED, UNTIMED
-=======
 from scale import IS_WHOLE, examples, seeds, some_long
-from shipped import UNTIMED
->>>>>>> w-suite
+from shipped import TIMED, UNTIMED
 from swarms import swarms
 from timed_missions import alike_timings, with_timing
 from timed_reports import assert_alike
@@ -69,7 +64,6 @@ def both(initial, most):
     return shared, apart
 
 
-<<<<<<< HEAD
 def zones(found):
     """The number of zones in a mission with times."""
     return None if found.times is None else found.times.search.count
@@ -80,10 +74,7 @@ def runs_of(found):
     return found.times.network.learner.runs
 
 
-@pytest.mark.parametrize("name", [*UNTIMED, *TIMED])
-=======
-@pytest.mark.parametrize("name", some_long(UNTIMED))
->>>>>>> w-suite
+@pytest.mark.parametrize("name", some_long([*UNTIMED, *TIMED]))
 def test_a_mission_that_ships_is_explored_as_if_nothing_were_shared(name):
     both(load_mission(name).initial, 800 if IS_WHOLE else 400)
 
