@@ -76,19 +76,21 @@ class LoopCache(FunctionCache):
 
 
 def _lock(opened: IO[str]) -> None:
-    """Wait until no other process has locked a file."""
+    """Wait until no other process has locked a file; where files can't be locked, don't wait."""
     if fcntl is not None:
-        try:
-            fcntl.flock(opened, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError:
-            with trigger_event("numba:compile"):
-                fcntl.flock(opened, fcntl.LOCK_EX)
+        with suppress(OSError):
+            try:
+                fcntl.flock(opened, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            except BlockingIOError:
+                with trigger_event("numba:compile"):
+                    fcntl.flock(opened, fcntl.LOCK_EX)
 
 
 def _unlock(opened: IO[str]) -> None:
     """Release a lock at once, also where a forked process has the file open."""
     if fcntl is not None:
-        fcntl.flock(opened, fcntl.LOCK_UN)
+        with suppress(OSError):
+            fcntl.flock(opened, fcntl.LOCK_UN)
 
 
 @cache
