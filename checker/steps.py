@@ -60,16 +60,28 @@ def step_between(source: Configuration, target: Configuration) -> Step:
 
 
 def candidates(
-    source: Configuration, sight: Sight | Elsewhere | None = None, label: str | None = None
+    source: Configuration,
+    sight: Sight | Elsewhere | None = None,
+    label: str | None = None,
+    *,
+    in_turn: bool = True,
 ) -> tuple[Transition, ...]:
     """Return the possible next steps, or those that a sight may mean.
 
-    With a label, agents that it does not name are skipped: the label of an agent's step always has its name.
+    Args:
+        source: The configuration before.
+        sight: An observation of a live run.
+        label: The label of the step. Agents that it does not name are skipped: the label of an agent's step always has
+            its name.
+        in_turn: Whether requests are served in the turn of `fcfs`.
     """
     agents = [name for name in source.alpha.names() if label is None or name in label]
     if sight is not None:
         return tuple(steps_seen(source, sight, agents))
-    return _in_turn(source, agents)
+    if in_turn:
+        return _in_turn(source, agents)
+    found = expand_by(source, agents)
+    return found.enabled + found.by_environment
 
 
 def _in_turn(source: Configuration, agents: Sequence[Name]) -> tuple[Transition, ...]:
@@ -84,6 +96,8 @@ def _in_turn(source: Configuration, agents: Sequence[Name]) -> tuple[Transition,
     return found if is_first else tuple(each for each in found if turn_of(each) is None)
 
 
-def alike(source: Configuration, label: str, sight: Sight | Elsewhere | None = None) -> list[Transition]:
+def alike(
+    source: Configuration, label: str, sight: Sight | Elsewhere | None = None, *, in_turn: bool = True
+) -> list[Transition]:
     """Return the steps with a label."""
-    return [each for each in candidates(source, sight, label) if str(each.label) == label]
+    return [each for each in candidates(source, sight, label, in_turn=in_turn) if str(each.label) == label]

@@ -53,6 +53,8 @@ class Trace:
         shortest: Whether the trace is certainly a shortest one. It isn't where steps were put
             off (`--reduce por`), nor where to find out would take too long.
         race: The three steps of the stale-observation race that it is a trace of.
+        in_turn: Whether requests are served in turn under `fcfs`. In a live run others may go first while a vehicle or
+            an operator keeps a request waiting.
     """
 
     initial: Configuration
@@ -61,6 +63,7 @@ class Trace:
     shortest: bool = field(default=True, compare=False)
     dates: tuple[int, ...] = ()
     race: RaceSteps | None = None
+    in_turn: bool = True
 
     @property
     def called(self) -> str:
@@ -83,7 +86,7 @@ class Trace:
         source = self.configurations[-1]
         steps = (*self.steps, step_of(source, transition.label, transition.target))
         dates = self.dates if at is None else (*self.dates, at)
-        return Trace(self.initial, steps, shortest=self.shortest, dates=dates, race=self.race)
+        return replace(self, steps=steps, dates=dates, loop=None)
 
     @property
     def moments(self) -> tuple[int, ...]:
@@ -259,6 +262,8 @@ def to_json(trace: Trace, mission: str, digest: str) -> dict[str, Any]:
     ]
     remembering = trace.initial.setting.monitored
     data = {"schema": SCHEMA, "mission": mission, "digest": digest, "monitored": remembering, "steps": steps}
+    if not trace.in_turn:
+        data["in_turn"] = False
     return data if trace.loop is None else data | {"loop": trace.loop}
 
 
@@ -284,16 +289,16 @@ def replay(initial: Configuration, data: Any) -> Trace:
         ReplayError: A step is not allowed, or the loop doesn't close.
         ValueError: The data are no trace.
     """
-    steps, loop = _steps(data), _loop(data)
+    steps, loop, in_turn = _steps(data), _loop(data), data.get("in_turn") is not False
     if data.get("monitored") is True and not initial.setting.monitored:
         initial = monitored(initial)
     trace: list[Step] = []
     at = initial
     for number, said in enumerate(steps, 1):
-        trace.append(_followed(at, number, said))
+        trace.append(_followed(at, number, said, in_turn=in_turn))
         at = trace[-1].target
     dates, race = _dates(initial, trace, data["steps"]), _race(initial, trace, data["steps"])
-    return _closed(Trace(initial, tuple(trace), loop, dates=dates, race=race))
+    return _closed(Trace(initial, tuple(trace), loop, dates=dates, race=race, in_turn=in_turn))
 
 
 def _race(initial: Configuration, trace: Sequence[Step], said: Sequence[Any]) -> RaceSteps | None:
@@ -345,21 +350,21 @@ def _date(number: int, said: Any, tick: int) -> int:
     return milliseconds // tick
 
 
-def follow(before: Configuration, number: int, said: Any) -> Step:
-    """Return the step of plain data, re-run by the rules.
+def follow(before: Configuration, number: int, said: Any, *, in_turn: bool) -> Step:
+    """Return the step of plain data, re-run by the rules, in the turn of `fcfs` or out of it.
 
     Raises:
         ReplayError: The step is not allowed there, or has another target.
         ValueError: The data are no step.
     """
-    return _followed(before, number, _step(number, said))
+    return _followed(before, number, _step(number, said), in_turn=in_turn)
 
 
-def _followed(before: Configuration, number: int, said: _Said) -> Step:
+def _followed(before: Configuration, number: int, said: _Said, *, in_turn: bool) -> Step:
     label, choice, sight, wrote = said
-    same = alike(before, label, sight)
+    same = alike(before, label, sight, in_turn=in_turn)
     if choice >= len(same):
-        enabled = sorted({str(transition.label) for transition in candidates(before, sight)})
+        enabled = sorted({str(each.label) for each in candidates(before, sight, in_turn=in_turn)})
         waits = sight is None and any(str(each.label) == label for each in expand(before).out_of_turn)
         raise ReplayError(number, label, enabled, OUT_OF_TURN if waits else _cause(len(same)))
     taken = same[choice]

@@ -24,7 +24,7 @@ from semantics.state.signature import REGION, Name
 from semantics.state.station_partition import is_here
 
 Service = tuple[tuple[Transition, ...], bool]
-"""The transitions that serve a request now, and whether it only waits for a vehicle's confirmation."""
+"""The transitions that serve a request now, and whether it could be served but for a vehicle or an operator."""
 
 
 def serve(turning: Turning) -> bool:
@@ -49,7 +49,7 @@ def _service(turning: Turning, pending: PendingRequest) -> Service:
         unseen = turning.sightings.unseen  # each answer misses more entities than those before
         return tuple(each for each in reversed(found) if unseen.issuperset(each.label.missed)), False
     if turning.overrides.stops(request.agent):
-        return (), False
+        return (), bool(found)
     if not found:
         _blocked(turning, request)
         return (), False
@@ -88,10 +88,8 @@ def _controlled(turning: Turning, request: CTR, way: Realisation, found: tuple[T
     if unseen:
         turning.find("blocked", request.agent, f"{request}: {unseen}; it stays pending", once=True)
         return (), True
-    if way.flying:
-        return (found if _set_out(turning, request, way) else ()), False
-    confirmed = _hand_over(turning, request, way)
-    return (found if confirmed else ()), not confirmed
+    goes = _set_out(turning, request, way) if way.flying else _hand_over(turning, request, way)
+    return (found, False) if goes else ((), True)
 
 
 def _set_out(turning: Turning, request: CTR, way: Realisation) -> bool:

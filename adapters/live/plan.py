@@ -19,7 +19,8 @@ class Plan:
         first: The mission's first configuration, under `control timed` and `fcfs`.
         vehicles: For each entity that takes commands, the plugin that owns it.
         precautions: The mission's responses to broken assumptions and exceeded time limits.
-        strict: Whether other requests wait while a vehicle confirms a hand-over, since the verdict is for `fcfs` only.
+        strict: Whether other requests wait while a vehicle or an operator keeps one waiting, since the verdict is for
+            `fcfs` only.
         peers: The plugin of the other stations, which also reports vehicles; empty if there are none.
         invariants: The mission's invariants about ways, which the run watches.
         fixed: The entities that never move: where they are not seen, they are where the mission has them.

@@ -47,7 +47,12 @@ class Recording:
         """Return the steps as a trace, in the step schema."""
         steps = [{**message.data, "changes": [], "time": message.time} for message in self.of("steps")]
         known = {"schema": schema, "mission": self.run["mission"], "digest": self.run["digest"]}
-        return {**known, "monitored": False, "steps": steps}
+        return {**known, "monitored": False, "steps": steps, "in_turn": self.in_turn}
+
+    @property
+    def in_turn(self) -> bool:
+        """Whether requests were served in the turn of `fcfs`, since the verdict was for `fcfs` only."""
+        return self.run.get("strict") is True
 
 
 def is_recording(path: str) -> bool:

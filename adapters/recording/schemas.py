@@ -75,7 +75,7 @@ RUN: Final = _object(
     verdict={"type": ["object", "null"], "description": "The verdict file of the run."},
     strict={
         "type": "boolean",
-        "description": "Whether other requests waited while vehicles confirmed hand-overs.",
+        "description": "Whether other requests waited while a vehicle or an operator kept one waiting.",
     },
     vehicles={"type": "object", "description": "For each vehicle its plugin."},
     fences={"type": "object", "description": "For each vehicle that has a fence its ring."},

@@ -36,7 +36,7 @@ class RecordedRun:
         """Return whether each step is a choice under the scheduler and the control of a setting: none was seen."""
         own = self.trace.initial.setting
         alike = (own.scheduler, own.control) == (setting.scheduler, setting.control)
-        return alike and all(step.sight is None for step in self.trace.steps)
+        return alike and self.trace.in_turn and all(step.sight is None for step in self.trace.steps)
 
 
 def run_in_file(path: Path, mission: ElaboratedMission) -> RecordedRun:

@@ -57,11 +57,12 @@ def rules_of(run: Mapping[str, Any]) -> Rules:
         raise Unreplayable(f"its mission cannot be read: {mistake}") from mistake
     first = mission.initial if parting is None else parted(mission.initial, parting)
     live = mission.precautions
-    return Rules(first, mission.fixed, live.limits, live.on_broken, remembering())
+    replayed = remembering(in_turn=recording.in_turn)
+    return Rules(first, mission.fixed, live.limits, live.on_broken, replayed)
 
 
-def remembering() -> Callable[[Configuration, Any], tuple[Label, Configuration]]:
-    """Return the function that replays recorded steps, with a cache."""
+def remembering(*, in_turn: bool) -> Callable[[Configuration, Any], tuple[Label, Configuration]]:
+    """Return the function that replays recorded steps, in the turn of `fcfs` or out of it, with a cache."""
     known: dict[tuple[Configuration, str, int, str], tuple[Label, Configuration]] = {}
 
     def taken(before: Configuration, said: Any) -> tuple[Label, Configuration]:
@@ -69,18 +70,18 @@ def remembering() -> Callable[[Configuration, Any], tuple[Label, Configuration]]
             case {"label": str(label), "choice": int(choice), "digest": str(wrote)} if "observed" not in said:
                 key = (before, label, choice, wrote)
                 if key not in known:
-                    known[key] = _taken(before, said)
+                    known[key] = _taken(before, said, in_turn=in_turn)
                     if len(known) > MOST_STEPS:
                         del known[next(iter(known))]
                 return known[key]
-        return _taken(before, said)
+        return _taken(before, said, in_turn=in_turn)
 
     return taken
 
 
-def _taken(before: Configuration, said: Any) -> tuple[Label, Configuration]:
+def _taken(before: Configuration, said: Any, *, in_turn: bool) -> tuple[Label, Configuration]:
     try:
-        step = follow(before, said["number"], said)
+        step = follow(before, said["number"], said, in_turn=in_turn)
     except (ReplayError, ValueError) as error:
         raise Unreplayable(str(error).partition("\n")[0]) from error
     return step.label, step.target

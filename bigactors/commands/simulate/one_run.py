@@ -38,12 +38,14 @@ class OneRun:
         taken: The steps so far.
         dates: The date of each step in ticks; empty for a mission without times.
         shown: The texts that `display` showed in each step.
+        in_turn: Whether all its steps are in the turn of `fcfs`: see `Trace`.
     """
 
     initial: Configuration
     taken: list[Step] = field(default_factory=list)
     dates: list[int] = field(default_factory=list)
     shown: list[tuple[str, ...]] = field(default_factory=list)
+    in_turn: bool = True
     _dated: list[DatedRun] = field(default_factory=list)
 
     def __post_init__(self) -> None:
@@ -55,7 +57,7 @@ class OneRun:
     @classmethod
     def following(cls, trace: Trace) -> OneRun:
         """Return a run that begins with the steps of a trace; without times if the trace has no dates."""
-        run = cls(trace.initial)
+        run = cls(trace.initial, in_turn=trace.in_turn)
         if run.is_timed and not trace.dates:
             run._dated.clear()
         for step, date in zip(trace.steps, trace.dates or repeat(None), strict=False):
@@ -76,7 +78,7 @@ class OneRun:
     @property
     def trace(self) -> Trace:
         """The run so far."""
-        return Trace(self.initial, tuple(self.taken), dates=tuple(self.dates))
+        return Trace(self.initial, tuple(self.taken), dates=tuple(self.dates), in_turn=self.in_turn)
 
     def expansion(self) -> Expansion:
         """Return the possible transitions at any date."""

@@ -1,5 +1,7 @@
 """Whatever telemetry, feeds and people do: live runs are runs of the rules, and commit only what was seen."""
 
+from dataclasses import replace
+
 from hypothesis import given
 from hypothesis import strategies as st
 from live_missions import BETWEEN, EAST, TOUR, WEST, Run, boat, plan_of, seen
@@ -93,17 +95,18 @@ def histories(draw):
     return [(now, draw(batches(now))) for now in times]
 
 
-def lived(history):
-    run = Run(PLAN)
+def lived(history, plan=PLAN):
+    run = Run(plan)
     for now, batch in history:
         run.turn(now, *batch.heard, reports=batch.reports, sayings=batch.sayings)
     return run
 
 
-def assert_every_step_is_one_of_the_rules(steps):
+def assert_every_step_is_one_of_the_rules(steps, in_turn):
     for step in steps:
         if step.sight is None:
-            alike = [t for t in candidates(step.source) if str(t.label) == str(step.transition.label)]
+            found = candidates(step.source, in_turn=in_turn)
+            alike = [t for t in found if str(t.label) == str(step.transition.label)]
             assert alike[step.choice].target == step.transition.target
 
 
@@ -149,17 +152,25 @@ def test_a_live_run_is_one_of_the_rules_and_commits_and_tells_only_what_it_may(h
         assert_who_was_taken_over_is_told_nothing_and_arrives_nowhere_until_it_is_given_back(
             before, turn, batch
         )
-    assert_every_step_is_one_of_the_rules(run.steps)
+    assert_every_step_is_one_of_the_rules(run.steps, in_turn=False)
     assert_nothing_is_sent_before_the_vehicle_is_heard_and_requests_are_named_once(run, history)
 
 
+@examples(240)
 @given(histories())
-def test_the_same_happens_again_and_replays_to_the_same_configuration(history):
-    first, second = lived(history), lived(history)
+def test_under_a_verdict_for_fcfs_only_every_request_is_served_in_turn(history):
+    run = lived(history, replace(PLAN, strict=True))
+    assert_every_step_is_one_of_the_rules(run.steps, in_turn=True)
+
+
+@given(histories(), st.booleans())
+def test_the_same_happens_again_and_replays_to_the_same_configuration(history, strict):
+    plan = replace(PLAN, strict=strict)
+    first, second = lived(history, plan), lived(history, plan)
     assert first.labels == second.labels
     assert first.state.configuration == second.state.configuration
     assert (first.commands, first.findings) == (second.commands, second.findings)
-    data = {"schema": SCHEMA, "mission": "m", "digest": "", "monitored": False}
+    data = {"schema": SCHEMA, "mission": "m", "digest": "", "monitored": False, "in_turn": strict}
     trace = replay(
         PLAN.first, {**data, "steps": [{**step_json(step), "changes": []} for step in first.steps]}
     )

@@ -14,7 +14,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from json_mutations import mutated
-from live_missions import BETWEEN, EAST, TOUR, WEST, Run, boat, mission, plan_of, seen
+from live_missions import BESIDE, BETWEEN, EAST, TOUR, TWO, WEST, Run, boat, mission, plan_of, seen
 from scale import examples
 
 from adapters.live.batch import Acknowledging, GivingBack, Heard, Noting, Ordering, Saying
@@ -37,6 +37,7 @@ from adapters.recording.mcap_files import McapWriter, Message, RecordingError
 from adapters.recording.recording_reader import is_recording, read_recording
 from adapters.recording.schemas import COMMANDS, SCHEMAS
 from adapters.recording.writing import MOST_ARRIVALS, Recorder
+from bigactors.commands.console.recorded_history import rules_of
 from bigactors.mission_lookup import digest_of
 from bigactors.mistakes import Mistake
 from bigactors.recordings import open_recording, resume, trace_of
@@ -109,6 +110,45 @@ def test_members_of_families_and_routes_are_recorded_and_replay(tmp_path):
     assert again.configurations[-1] == run.state.configuration
     assert {step.label.agent for step in again.steps} == {"op[gcs0]", "patrol[uav0]"}
     assert "commit" in {step.label.rule for step in again.steps}
+
+
+TWO_PILOTS = (
+    TWO
+    + """
+BigActor a hosted_at uav0 with_behavior { control(MOVE_HOST_TO east0) }
+BigActor b hosted_at uav1 with_behavior { observe(CHILDREN(PARENT(HOST))) react { case o => display(o) } }
+"""
+)
+KEPT_WAITING = {
+    "an operator holds it": ((WEST,), [], [Ordering(Fallback.HOLD, "uav0")]),
+    "a pilot flies it": ((WEST,), [TakenOver("uav0", 0.0, "it is in RTL")], []),
+    "it is not heard": ((), [], []),
+}
+
+
+@pytest.mark.parametrize("strict", [False, True])
+@pytest.mark.parametrize("why", KEPT_WAITING)
+def test_while_a_vehicle_keeps_a_request_waiting_others_are_served_unless_the_verdict_is_one_under_fcfs(
+    tmp_path, why, strict
+):
+    places, reports, sayings = KEPT_WAITING[why]
+    path, run = tmp_path / "run.mcap", Run(plan_of(TWO_PILOTS, strict=strict))
+    recorder = Recorder(path, HEADER | {"text": TWO_PILOTS, "strict": strict}, 0.0)
+    heard = [seen("uav0", place, 0.0) for place in places] + [seen("uav1", BESIDE, 0.0)]
+    recorder.turn(run.turn(0.0, *heard, reports=reports, sayings=sayings), 0.0, lambda _: ())
+    recorder.close("done", 1.0)
+    assert ("sense" in run.rules) != strict
+    recording = read_recording(path)
+    trace = replay(mission(TWO_PILOTS).initial, recording.trace(SCHEMA))
+    assert trace.configurations[-1] == run.state.configuration
+    assert replay(trace.initial, to_json(trace, "tour", "sha256:0")) == trace
+    rules, at = rules_of(recording.run), trace.initial
+    for message in recording.of("steps"):  # as the console replays them
+        _, at = rules.follow(at, message.data)
+    assert at == run.state.configuration
+    if not strict:
+        with pytest.raises(ReplayError, match="out of turn"):
+            replay(trace.initial, recording.trace(SCHEMA) | {"in_turn": True})
 
 
 def test_a_recording_replays_to_the_same_configurations(recorded):

@@ -9,7 +9,8 @@ import pytest
 
 from bigactors.cli import main
 from bigactors.studio.exploration import Exploration
-from checker import check, replay, to_json
+from checker import Trace, check, replay, to_json
+from checker.steps import Step, candidates
 from semantics.state.setting import Control, Scheduler
 from semantics.successors import successors
 from specs.elaboration import load_mission, read_mission
@@ -137,3 +138,21 @@ def test_a_trace_under_another_control_is_shown_under_it():
     assert labels(shown) == [str(step.label) for step in trace.steps]
     saved = asked(exploration, ask="save", run=shown["run"])["trace"]
     assert len(replay(timed.initial, saved)) == len(trace)
+
+
+def test_a_run_in_which_a_request_had_to_wait_is_shown_as_it_was_recorded():
+    watch = "BigActor b hosted_at gcs0 with_behavior { observe(ALL) }\nscheduler fcfs\ncontrol timed\n"
+    mission = read_mission(NEAR + watch, ".")
+    steps, at = [], mission.initial
+    for words in ("req_ctr : a", "req_obs : b", "sense : OBS(b"):
+        step = next(each for each in candidates(at, in_turn=False) if words in str(each.label))
+        steps.append(Step(step.label, 0, step.target))
+        at = step.target
+    trace = Trace(mission.initial, tuple(steps), in_turn=False)
+    data = to_json(trace, "m", "d") | {"scheduler": "fcfs", "control": "timed"}
+    exploration = Exploration(mission)
+    shown = asked(exploration, ask="load", trace=data)
+    assert labels(shown) == [str(each.label) for each in steps]
+    saved = asked(exploration, ask="save", run=shown["run"])["trace"]
+    assert replay(mission.initial, saved) == trace
+    assert "out of turn" in exploration.handle({"ask": "load", "trace": data | {"in_turn": True}})["error"]
