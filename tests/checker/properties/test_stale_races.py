@@ -40,7 +40,7 @@ from semantics.races.provenance import ANY, EVERYTHING, MEMBERS, SIZE, Dependenc
 from semantics.races.relevance import SLOTS
 from semantics.successors import expand
 from specs import MissionError
-from specs.elaboration import load_mission
+from specs.elaboration import load_mission, read_mission
 
 ROOT = Path(__file__).parents[3]
 MISSIONS = sorted(
@@ -237,6 +237,52 @@ def test_races_about_the_same_places_of_the_text_are_one_and_the_others_counted(
     found = check(mission, engine=engine).verdicts[0]
     (one,) = found.violations
     assert (one.kind, one.alike, found.different) == (kind, 1, 2)
+
+
+WAITS_IN_THE_QUEUE = """\
+mission queued
+
+signature {
+  kind Location contains Location, UAV
+  kind UAV driven
+}
+
+world {
+  west0: Location = box (37.04, -8.7) (36.94, -8.79)
+  middle0: Location = box (37.04, -8.61) (36.94, -8.69)
+  east0: Location = box (37.04, -8.51) (36.94, -8.59)
+  uav0: UAV = point (37.0, -8.65)
+  uav1: UAV = point (37.0, -8.62)
+}
+
+BigActor a hosted_at uav0 with_behavior {
+  observe(CHILDREN(east0))
+  react { case o => control(MOVE_HOST_TO west0) if not (uav1 in o) { control(MOVE_HOST_TO east0) } }
+}
+
+BigActor b hosted_at uav1 with_behavior {
+  react { after 20 s => control(MOVE_HOST_TO east0) }
+}
+
+scheduler fcfs
+control timed
+
+timing {
+  tick 5 s
+  uav0 flies at 20 m/s to 20 m/s
+  uav1 flies at 100 m/s to 100 m/s
+  agents react within 5 s
+  sense within 5 s
+}
+
+check { race_freedom }
+"""
+"""The second request of `a` waits in the queue while `b` changes what `a` has seen; it was asked for before that."""
+
+
+def test_a_request_goes_stale_while_it_waits_in_the_one_queue_of_all():
+    found = check(read_mission(WAITS_IN_THE_QUEUE, "."), engine=Engine.REFERENCE).verdicts["race_freedom"]
+    assert found.violations[0].message.startswith("CTR(a, MOVE_HOST_TO east0) depends on whether")
 
 
 # --- what is forgotten ----------------------------------------------------------------------------------------
