@@ -21,8 +21,11 @@ from checker.engines.zones.zone_tables import (
     new_batch,
 )
 
-BOUNDS = 1 << 18
+BOUNDS = 1 << 20
 """The bounds of a batch, if they suffice for one row."""
+
+WORTH = 1 << 5
+"""The least number of zones for another thread; a zone takes as long as many rows."""
 
 
 class LayerSearch(Protocol):
@@ -72,7 +75,7 @@ class ZoneChunks:
 
     def __init__(self, search: LayerSearch, threads: int) -> None:
         self.search = search
-        self.pipeline = Pipeline[ZoneChunk](threads, self._make, self._sift)
+        self.pipeline = Pipeline[ZoneChunk](threads, self._make, self._sift, WORTH)
         self.current: ZoneChunk | None = None
         self.spare: list[ZoneBatch] = []
         self.zones, self.breadth = 0, 1.0

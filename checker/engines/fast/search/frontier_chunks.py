@@ -18,6 +18,9 @@ from checker.engines.fast.store import kernel
 FEW = 1 << 6
 """The number of rows of the first chunk, and of the next one after results ahead were void."""
 
+WORTH = 1 << 8
+"""The least number of rows for another thread."""
+
 LATER_ROWS = 1 << 10
 """The greatest number of deferred rows in a chunk."""
 
@@ -100,7 +103,7 @@ class FrontierChunks:
         self.expander = expander
         self.steps = steps
         self.store = expander.store
-        self.pipeline = self.store.readers = Pipeline[RowChunk](threads, steps.gather, steps.sift)
+        self.pipeline = self.store.readers = Pipeline[RowChunk](threads, steps.gather, steps.sift, WORTH)
         self.pace, self.breadth = FEW, 1.0
         self.spare: list[Any] = []
         self.shape = expander.shape

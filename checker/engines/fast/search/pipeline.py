@@ -26,9 +26,6 @@ EACH = 4
 SHARE = 2
 """The least number of chunks for each thread into which the pending rows are divided."""
 
-WORTH = 1 << 8
-"""The least number of rows for which another thread pays off: handing over takes time."""
-
 
 class ChunkMark(NamedTuple):
     """A place in a chunk: a row, and the numbers of transitions and of successors before it."""
@@ -89,6 +86,7 @@ class Pipeline(Generic[Part]):
 
     Attributes:
         threads: The number of threads, including the one that stores.
+        worth: The least size of a chunk for which another thread pays off: handing over takes time.
         expand: Expands a chunk, in any thread.
         sift: Drops the known successors of a chunk; otherwise storing drops them.
         ahead: The chunks, in order.
@@ -96,8 +94,11 @@ class Pipeline(Generic[Part]):
         is_far_ahead: Whether more chunks were ready at the last `take` than can be stored at once.
     """
 
-    def __init__(self, threads: int, expand: Callable[[Part], None], sift: Callable[[Part], None]) -> None:
+    def __init__(
+        self, threads: int, expand: Callable[[Part], None], sift: Callable[[Part], None], worth: int
+    ) -> None:
         self.threads = threads
+        self.worth = worth
         self.expand = expand
         self.sift = sift
         self.awaited: Part | None = None
@@ -122,7 +123,7 @@ class Pipeline(Generic[Part]):
 
     def fair(self, rows: int) -> int:
         """Return the greatest size of a chunk such that all threads get some of `rows` rows."""
-        return rows if self.beside is None else max(rows // (SHARE * self.threads), WORTH)
+        return rows if self.beside is None else max(rows // (SHARE * self.threads), self.worth)
 
     def add(self, part: Part) -> None:
         """Add a chunk behind the others; another thread expands it, or this one at its turn."""
@@ -130,7 +131,7 @@ class Pipeline(Generic[Part]):
         self._hand_over(part)
 
     def _hand_over(self, part: Part) -> None:
-        if self.beside is not None and part.end - part.begin >= WORTH:
+        if self.beside is not None and part.end - part.begin >= self.worth:
             part.expanding = self.beside.submit(self._expand_beside, part)
 
     def _expand_beside(self, part: Part) -> None:

@@ -21,7 +21,7 @@ from checker.engines.cluster.explorer import Expedition
 from checker.engines.contract import Options
 from checker.engines.fast import explorer
 from checker.engines.fast.model import learned_model
-from checker.engines.fast.search import expander, pipeline
+from checker.engines.fast.search import expander, frontier_chunks
 from checker.engines.fast.store import row_store, tree_compression
 from checker.engines.fast.store.rows import Rows
 from checker.reduction import Reduced, Reduction
@@ -51,7 +51,7 @@ def small_rooms(monkeypatch):
     """Let rooms grow, batches be too small for a row, and the clock be looked at after every other row."""
     monkeypatch.setattr(row_store, "FIRST_ROWS", 8)
     monkeypatch.setattr(expander, "BATCH", 8)
-    monkeypatch.setattr(pipeline, "WORTH", 4)
+    monkeypatch.setattr(frontier_chunks, "WORTH", 4)
     monkeypatch.setattr(explorer, "CHUNK", 2)
 
 

@@ -19,7 +19,7 @@ from checker.engines.contract import Options
 from checker.engines.fast import explorer
 from checker.engines.fast.explorer import explore_fast
 from checker.engines.fast.reduce.chosen_rows import REJECTED
-from checker.engines.fast.search import chosen_steps, expander, frontier_chunks, pipeline
+from checker.engines.fast.search import chosen_steps, expander, frontier_chunks
 from checker.engines.fast.store import row_store, tree_compression
 from checker.engines.fast.store.rows import Rows
 from checker.reduction import Reduced, Reduction
@@ -39,7 +39,7 @@ def small_slices(monkeypatch):
     monkeypatch.setattr(expander, "BATCH", 64)
     monkeypatch.setattr(frontier_chunks, "FEW", 4)
     monkeypatch.setattr(frontier_chunks, "LATER_ROWS", 3)
-    monkeypatch.setattr(pipeline, "WORTH", 1)
+    monkeypatch.setattr(frontier_chunks, "WORTH", 1)
 
 
 KEPT = {"plain": row_store.PLAIN, "folded": 1}

@@ -24,7 +24,7 @@ SOME = Limits(configurations=400)
 @pytest.fixture(autouse=True)
 def small_chunks(monkeypatch):
     """Let small missions have many chunks, some of which are too large for their batch."""
-    monkeypatch.setattr(pipeline, "WORTH", 1)
+    monkeypatch.setattr(zone_chunks, "WORTH", 1)
     monkeypatch.setattr(zone_chunks, "BOUNDS", 64)
     monkeypatch.setattr(explorer, "CHUNK", 64)
 
