@@ -1,4 +1,4 @@
-"""Chunks of a layer of zones, whose successors any thread makes ahead of the thread that stores them."""
+"""Chunks of a layer of zones: any thread makes their successors ahead of the thread that stores them."""
 
 from dataclasses import dataclass
 from typing import Protocol
@@ -49,7 +49,7 @@ class LayerSearch(Protocol):
 
 @dataclass(slots=True, eq=False)
 class ZoneChunk(Chunk):
-    """Zones of some rows of a layer, whose successors one thread makes.
+    """Zones of some rows of a layer: one thread makes their successors.
 
     Attributes:
         batch: The successors.

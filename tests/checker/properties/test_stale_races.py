@@ -379,7 +379,7 @@ b@gcs0: control(HAND uav0 TO gcs1)
 c@vessel0: control(MOVE_HOST_TO gate0)
 d@vessel0: control(DISCONNECT_HOST_FROM uav0)
 """)
-"""Each moves something, alone or with what is aboard, or changes what it is linked to."""
+"""Controls that move a node, with or without cargo, or change its links."""
 
 WIDE = WORLD.replace("kind Vessel driven carries", "kind Vessel driven contains UAV carries").replace(
     "point (36.975, -8.69)", "circle (36.98, -8.70) radius 100 m"

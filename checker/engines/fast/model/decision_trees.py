@@ -212,15 +212,17 @@ class Trees:
         self.nodes.room[RECORD * node + LOW : RECORD * node + WORD] = first, last - first + 1, base
 
     def _settle(self, questioned: QuestionedColumn) -> None:
-        """Answer all questions about a column for its new values, and lead all nodes onward whose answer is known."""
+        """Answer all questions about a column for its new values, and lead the nodes with known answers onward."""
         count, nodes = len(questioned.column.values), np.array(questioned.nodes, np.int64)
         if count > questioned.width:
             self._widen_all(questioned, nodes, 1 << (count - 1).bit_length())
         bases = self.nodes.room[RECORD * nodes + BASE].astype(np.int64)
         for code in range(questioned.answered, count):
-            said = questioned.answers(code)
+            answers = questioned.answers(code)
             pairs = zip(questioned.nodes, questioned.asked, strict=True)
-            self.next.room[bases + code] = [self.answers[node].get(said[ask], UNKNOWN) for node, ask in pairs]
+            self.next.room[bases + code] = [
+                self.answers[node].get(answers[ask], UNKNOWN) for node, ask in pairs
+            ]
 
     def _widen_all(self, questioned: QuestionedColumn, nodes: NDArray[np.int64], width: int) -> None:
         """Give all nodes that ask about a column windows of another width."""

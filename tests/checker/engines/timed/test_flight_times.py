@@ -1,4 +1,4 @@
-"""How long a flight may take, beside the distances of a meridian: places, ways, circles, bands, and where who is."""
+"""How long a flight may take, beside the distances of a meridian: places, ways, circles, bands, positions."""
 
 from math import ceil, floor, pi
 
@@ -54,7 +54,7 @@ def metres(one, other):
 
 
 def flights(text, lines):
-    """Return the intervals of the last flight of a, as they change; whoever else flies arrives first."""
+    """Return the intervals of the last flight of a, as they change; other flights end first."""
     c = load(f"{text}\ntiming {{\n{lines}\n}}\n", WORLD).initial
     found = []
     while steps := expand(c).by_agents:
@@ -65,7 +65,7 @@ def flights(text, lines):
 
 
 def of_flights(text, lines, ask=interval_of_flight):
-    """Return what is ever known of the flights of a, whatever else happens."""
+    """Return the intervals of the flights of a in all configurations."""
     found = explore(load(f"{text}\ntiming {{\n{lines}\n}}\n", WORLD).initial).configurations
     pending = ((c, each.request) for c in found for each in c.eta.of("a"))
     return {ask(c, request) for c, request in pending if isinstance(request, FLY)}
