@@ -98,6 +98,10 @@ def read_trace(
     try:
         start = monitored(mission.initial) if data.get("monitored") is True else mission.initial
         trace = replay(start, data)
+        if not trace.in_turn and start.setting.scheduler is Scheduler.FCFS:
+            tell(
+                f"{path}: warning: requests were served out of turn, as in a live run; it is no run of 'scheduler fcfs'"
+            )
         if not _is_of(data, mission):
             _warn_of_another(path, data, mission, mission_file or str(named))
             return Replayed(mission, trace)

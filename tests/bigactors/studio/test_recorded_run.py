@@ -140,7 +140,7 @@ def test_a_trace_under_another_control_is_shown_under_it():
     assert len(replay(timed.initial, saved)) == len(trace)
 
 
-def test_a_run_in_which_a_request_had_to_wait_is_shown_as_it_was_recorded():
+def test_a_run_in_which_a_request_had_to_wait_is_shown_as_it_was_recorded(tmp_path, capsys):
     watch = "BigActor b hosted_at gcs0 with_behavior { observe(ALL) }\nscheduler fcfs\ncontrol timed\n"
     mission = read_mission(NEAR + watch, ".")
     steps, at = [], mission.initial
@@ -155,4 +155,8 @@ def test_a_run_in_which_a_request_had_to_wait_is_shown_as_it_was_recorded():
     assert labels(shown) == [str(each.label) for each in steps]
     saved = asked(exploration, ask="save", run=shown["run"])["trace"]
     assert replay(mission.initial, saved) == trace
+    (tmp_path / "near.mission").write_text(NEAR + watch)
+    (tmp_path / "trace.json").write_text(json.dumps(data))
+    main(["replay", f"{tmp_path}/trace.json", "--mission", f"{tmp_path}/near.mission"])
+    assert "requests were served out of turn" in capsys.readouterr().err
     assert "out of turn" in exploration.handle({"ask": "load", "trace": data | {"in_turn": True}})["error"]
